@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "base/index.hpp"
+#include "io/history.hpp"
+
+namespace fexp::io {
+
+/// Hash of one body's state after a step.
+struct HashRow {
+  std::int64_t step{};
+  Index body{};
+  std::uint64_t hash{};
+
+  friend bool operator==(const HashRow&, const HashRow&) = default;
+};
+
+/// CSV with the columns step, body and hash (16 hexadecimal digits), ordered by step, then body.
+class HashLogWriter {
+ public:
+  explicit HashLogWriter(std::filesystem::path path);
+  void append(const HashRow& row);
+  void flush() { csv_.flush(); }
+  void close() { csv_.close(); }
+
+ private:
+  CsvWriter csv_;
+};
+
+/// Throws OutputError, naming the line, when the file is no hash log.
+[[nodiscard]] std::vector<HashRow> read_hash_log(const std::filesystem::path& path);
+
+}  // namespace fexp::io

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/summary.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.hpp"
+
+namespace fexp::io {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json run_part(const Summary& s) {
+  return {{"completed", s.completed},
+          {"exit_reason", s.exit_reason},
+          {"message", s.message},
+          {"title", s.title},
+          {"steps", s.steps},
+          {"time", s.time},
+          {"duration", s.duration},
+          {"elements", s.elements},
+          {"nodes", s.nodes},
+          {"bodies", s.bodies},
+          {"threads", s.threads},
+          {"ranks", s.ranks},
+          {"energy_error", s.energy_error},
+          {"linear_momentum_error", s.linear_momentum_error},
+          {"angular_momentum_error", s.angular_momentum_error},
+          {"state_hash", s.state_hash},
+          {"wall_seconds", s.wall_seconds},
+          {"element_steps_per_second", s.element_steps_per_second}};
+}
+
+ordered_json energies_part(const Summary::Energies& e) {
+  return {{"kinetic", e.kinetic},   {"internal", e.internal}, {"contact", e.contact}, {"barrier", e.barrier},
+          {"external", e.external}, {"damping", e.damping},   {"balance", e.balance}};
+}
+
+ordered_json fault_part(const Summary::FaultPlace& f) {
+  ordered_json json = ordered_json::object();
+  if (f.element >= 0) {
+    json["element"] = f.element;
+  }
+  if (f.node >= 0) {
+    json["node"] = f.node;
+  }
+  if (!f.body.empty()) {
+    json["body"] = f.body;
+  }
+  json["cure"] = f.cure;
+  return json;
+}
+
+}  // namespace
+
+ordered_json to_json(const Summary& s) {
+  ordered_json json = run_part(s);
+  json["energies"] = energies_part(s.energies);
+  json["step_smallest"] = s.step_smallest;
+  json["step_largest"] = s.step_largest;
+  json["frames"] = s.frames;
+  json["epochs"] = s.epochs;
+  json["rollbacks"] = s.rollbacks;
+  json["islands_fewest"] = s.islands_fewest;
+  json["islands_most"] = s.islands_most;
+  json["contacts_most"] = s.contacts_most;
+  json["searches"] = s.searches;
+  json["deepest_penetration"] = s.deepest_penetration;
+  json["kernel"] = s.kernel;
+  if (s.exit_reason == "fault") {
+    json["fault"] = fault_part(s.fault);
+  }
+  ordered_json files = ordered_json::object();
+  for (const auto& [what, path] : s.files) {
+    files[what] = path;
+  }
+  json["files"] = std::move(files);
+  return json;
+}
+
+void write_summary(const std::filesystem::path& path, const Summary& summary) {
+  // Names in the deck may hold bytes that are no UTF-8: replaced rather than refused.
+  write_atomically(path, to_json(summary).dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace fexp::io

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fexp::io {
+
+/// What a run comes to: printed at its end, written as summary.json, and printed by --json.
+struct Summary {
+  bool completed{};         ///< The whole duration was integrated.
+  std::string exit_reason;  ///< "completed", "fault", "interrupted" or "output error"
+  std::string message;      ///< One sentence on why it ended early; empty when completed.
+  std::string title;
+  std::int64_t steps{};
+  double time{};      ///< [time]
+  double duration{};  ///< Asked for [time]
+  std::int64_t elements{};
+  std::int64_t nodes{};
+  std::int64_t bodies{};
+  int threads{};
+  int ranks{1};
+  double energy_error{};            ///< Largest relative imbalance over the run [-]
+  double linear_momentum_error{};   ///< Largest, relative to the sum of moduli [-]
+  double angular_momentum_error{};  ///< Largest, relative to the sum of moduli [-]
+  std::string state_hash;           ///< 16 hexadecimal digits
+  double wall_seconds{};
+  double element_steps_per_second{};
+
+  struct Energies {  ///< At the end [force*length]
+    double kinetic{};
+    double internal{};
+    double contact{};
+    double barrier{};
+    double external{};
+    double damping{};
+    double balance{};
+  } energies;
+
+  double step_smallest{};  ///< [time]
+  double step_largest{};   ///< [time]
+  std::int64_t frames{};   ///< In the results file
+  std::int64_t epochs{};
+  std::int64_t rollbacks{};
+  std::int64_t islands_fewest{};
+  std::int64_t islands_most{};
+  std::int64_t contacts_most{};  ///< Most pairs in contact at the same time
+  std::int64_t searches{};       ///< Contact searches
+  double deepest_penetration{};  ///< Over contact distance [-]
+  std::string kernel;            ///< Element kernel, e.g. "avx2"
+
+  struct FaultPlace {  ///< Set when exit_reason is "fault"; negative: not known
+    std::int64_t element{-1};
+    std::int64_t node{-1};
+    std::string body;
+    std::string cure;
+  } fault;
+
+  std::vector<std::pair<std::string, std::string>> files;  ///< (what it is, path)
+};
+
+/// The summary with its keys in the order above.
+[[nodiscard]] nlohmann::ordered_json to_json(const Summary& summary);
+
+/// Replaces `path` by the summary as a whole. Throws OutputError.
+void write_summary(const std::filesystem::path& path, const Summary& summary);
+
+}  // namespace fexp::io

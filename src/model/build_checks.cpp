@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/build_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace fexp::model {
+
+namespace {
+
+bool has_direction(const Vec3d& v) {
+  const double length = norm(v);
+  return length > 0.0 && std::isfinite(length);
+}
+
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& items) {
+  std::vector<std::string> names;
+  for (const Named& item : items) {
+    names.push_back(item.name);
+  }
+  return names;
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Every name is given once and is not empty; `reserved` counts as given.
+template <class Named>
+void check_names(std::string_view kind, const std::vector<Named>& items, std::set<std::string> reserved,
+                 ErrorList& errors) {
+  for (const Named& item : items) {
+    if (item.name.empty()) {
+      errors.add(item.place, fmt::format("this {} has no name", kind), "a name of its own", "give it a name");
+    } else if (!reserved.insert(item.name).second) {
+      errors.add(item.place, fmt::format("the name \"{}\" is already that of another {}", item.name, kind),
+                 "a name of its own", "rename one of them");
+    }
+  }
+}
+
+void check_curve(const Curve& curve, ErrorList& errors) {
+  double last = -HUGE_VAL;
+  bool good = !curve.points.empty();
+  for (const auto& [time, value] : curve.points) {
+    good = good && std::isfinite(time) && std::isfinite(value) && time >= last;
+    last = time;
+  }
+  if (!good) {
+    errors.add(curve.place, fmt::format("curve \"{}\" is no function of time", curve.name),
+               "at least one point, finite numbers, ascending times", "correct its points");
+  }
+}
+
+void check_dof(const std::string& dof, const Place& place, ErrorList& errors) {
+  if (dof_index(dof) == no_index) {
+    errors.add(place, fmt::format("\"{}\" is no degree of freedom", dof), "x, y, z, rx, ry, rz", "use one of these");
+  }
+}
+
+void check_section_name(const std::vector<std::string>& sections, const std::string& name, const std::string& body,
+                        const Place& place, ErrorList& errors) {
+  if (!contains(sections, name)) {
+    errors.add(place, fmt::format("body \"{}\" names section \"{}\", which is not there", body, name),
+               name_list(sections), "define it or correct the name");
+  }
+}
+
+void check_placement(const BodyDescription& body, ErrorList& errors) {
+  for (const Rotation& rotation : body.rotate) {
+    if (!has_direction(rotation.axis)) {
+      errors.add(body.place, fmt::format("a rotation of body \"{}\" has an axis without direction", body.name),
+                 "an axis that is not zero", "correct the axis");
+    }
+  }
+  if (!body.array) {
+    return;
+  }
+  const Vec3d& p = body.array->pitch;
+  const std::array<double, 3> pitch{p.x, p.y, p.z};
+  for (std::size_t d = 0; d < 3; ++d) {
+    const int count = body.array->count[d];
+    if (!Array::count_range.contains(count)) {
+      errors.add(body.place, fmt::format("body \"{}\": an array's count in {} is {}", body.name, dof_names[d], count),
+                 std::string(Array::count_range.text), "correct the count");
+    } else if (count > 1 && pitch[d] == 0.0) {
+      errors.add(body.place,
+                 fmt::format("body \"{}\": {} copies in {} stand in one place", body.name, count, dof_names[d]),
+                 "a pitch that is not zero where there is more than one copy", "set the pitch or the count");
+    }
+  }
+}
+
+/// Smallest component of a unit normal that is taken for more than rounding.
+constexpr double least_component = 1.0e-9;
+
+/// Part of axis `dof` (translations and rotations alike) along the normal.
+double along(const Vec3d& normal, Index dof) {
+  const Index axis = dof % 3;
+  return std::abs(axis == 0 ? normal.x : axis == 1 ? normal.y : normal.z);
+}
+
+/// A plane of symmetry lets translations in the plane and rotation about its normal free; a prescribed motion must be
+/// one of these.
+bool prescribed_clashes(const Vec3d& normal, Index dof) {
+  return dof < 3 ? along(normal, dof) > least_component : along(normal, dof) < 1.0 - least_component;
+}
+
+/// Holding one axis that is oblique to the plane couples the others, which the masks of fixed nodes cannot express.
+bool fixed_clashes(const Vec3d& normal, unsigned mask) {
+  constexpr unsigned every_axis = 7;
+  bool clash = false;
+  for (Index dof = 0; dof < 6; ++dof) {
+    const unsigned group = mask >> (dof < 3 ? 0U : 3U) & every_axis;
+    const bool oblique = along(normal, dof) > least_component && along(normal, dof) < 1.0 - least_component;
+    clash = clash || ((mask >> static_cast<unsigned>(dof) & 1U) != 0 && group != every_axis && oblique);
+  }
+  return clash;
+}
+
+template <class Item>
+auto first_at(const std::vector<Item>& items, Index node) {
+  return std::lower_bound(items.begin(), items.end(), node, [](const Item& item, Index n) { return item.node < n; });
+}
+
+}  // namespace
+
+Index dof_index(std::string_view name) {
+  const auto found = std::find(dof_names.begin(), dof_names.end(), name);
+  return found == dof_names.end() ? no_index : static_cast<Index>(found - dof_names.begin());
+}
+
+std::string name_list(std::span<const std::string> names) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  if (names.size() > most) {
+    text += fmt::format(" and {} more", names.size() - most);
+  }
+  return names.empty() ? "(there are none)" : text;
+}
+
+void check_description(const Description& description, ErrorList& errors) {
+  if (description.bodies.empty()) {
+    errors.add({}, "there is no body", "at least one body", "describe a body with a mesh and a section");
+  }
+  check_names("curve", description.curves, {}, errors);
+  check_names("material", description.materials, {}, errors);
+  check_names("section", description.sections, {}, errors);
+  check_names("body", description.bodies, {}, errors);
+  check_names("node set", description.node_sets, {"all"}, errors);
+  check_names("plane", description.planes, {}, errors);
+
+  const std::vector<std::string> materials = names_of(description.materials);
+  const std::vector<std::string> sections = names_of(description.sections);
+  for (const Curve& curve : description.curves) {
+    check_curve(curve, errors);
+  }
+  for (const Section& section : description.sections) {
+    if (!contains(materials, section.material)) {
+      errors.add(
+          section.place,
+          fmt::format("section \"{}\" names material \"{}\", which is not there", section.name, section.material),
+          name_list(materials), "define it or correct the name");
+    }
+  }
+  for (const BodyDescription& body : description.bodies) {
+    if (!body.section.empty()) {
+      check_section_name(sections, body.section, body.name, body.place, errors);
+    }
+    for (const PartSection& part : body.parts) {
+      check_section_name(sections, part.section, body.name, part.place, errors);
+    }
+    check_placement(body, errors);
+  }
+  for (const Fixed& fixed : description.fixed) {
+    for (const std::string& dof : fixed.dofs) {
+      check_dof(dof, fixed.place, errors);
+    }
+  }
+  for (const Prescribed& prescribed : description.prescribed) {
+    check_dof(prescribed.dof, prescribed.place, errors);
+  }
+  for (const Symmetry& symmetry : description.symmetry) {
+    if (!has_direction(symmetry.normal)) {
+      errors.add(symmetry.place, "the normal of a symmetry plane has no direction", "a vector that is not zero",
+                 "correct the normal");
+    }
+  }
+  for (const RigidPlane& plane : description.planes) {
+    if (!has_direction(plane.normal)) {
+      errors.add(plane.place, fmt::format("the normal of plane \"{}\" has no direction", plane.name),
+                 "a vector that is not zero", "correct the normal");
+    }
+  }
+}
+
+void check_symmetry(const Description& description, const Model& model, ErrorList& errors) {
+  for (const Symmetry& symmetry : description.symmetry) {
+    const auto set = std::find_if(model.node_sets.begin(), model.node_sets.end(),
+                                  [&](const NamedNodes& named) { return named.name == symmetry.set; });
+    if (set == model.node_sets.end() || !has_direction(symmetry.normal)) {
+      continue;
+    }
+    const Vec3d normal = (1.0 / norm(symmetry.normal)) * symmetry.normal;
+    for (const Index n : set->nodes) {
+      const auto fixed = first_at(model.fixed, n);
+      std::string_view clash;
+      if (fixed != model.fixed.end() && fixed->node == n && fixed_clashes(normal, fixed->mask)) {
+        clash = "fixed";
+      }
+      for (auto p = first_at(model.prescribed, n); p != model.prescribed.end() && p->node == n; ++p) {
+        if (prescribed_clashes(normal, p->dof)) {
+          clash = "prescribed";
+        }
+      }
+      if (!clash.empty()) {
+        errors.add(
+            symmetry.place,
+            fmt::format("symmetry of set \"{}\": node {} of body \"{}\" is {} against the plane of symmetry",
+                        symmetry.set, model.node_label[at(n)], model.bodies[at(model.node_body[at(n)])].name, clash),
+            "conditions along and across the plane", "take the node out of one of the sets");
+        break;
+      }
+    }
+  }
+}
+
+}  // namespace fexp::model

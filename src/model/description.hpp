@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+#include "base/errors.hpp"
+#include "base/field.hpp"
+#include "base/vec3.hpp"
+#include "model/mesh_generators.hpp"
+#include "physics/registry.hpp"
+
+/// What a user describes, before it is checked against meshes and frozen into a Model: plain values, each with its
+/// documented fields and the place in the deck it came from.
+namespace fexp::model {
+
+/// Piecewise linear function of time, constant beyond its ends.
+struct Curve {
+  std::string name;
+  std::vector<std::array<double, 2>> points;  ///< (time, value), times ascending, shape [points]
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"name", "-", "Name by which loads and conditions refer to the curve.", &Curve::name, any_number,
+            Presence::required},
+      Field{"points", "time, -", "Pairs [time, value] with ascending times; constant beyond the ends.", &Curve::points,
+            any_number, Presence::required},
+  };
+};
+
+struct Material {
+  std::string name;
+  physics::AnyMaterial law;
+  Place place;
+};
+
+struct Section {
+  std::string name;
+  std::string material;
+  double thickness{};  ///< [length]
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"name", "-", "Name by which bodies refer to the section.", &Section::name, any_number, Presence::required},
+      Field{"material", "-", "Name of a material.", &Section::material, any_number, Presence::required},
+      Field{"thickness", "length", "Shell thickness.", &Section::thickness, positive, Presence::required},
+  };
+};
+
+/// A mesh read from a file; the path is relative to the deck.
+struct MeshFile {
+  static constexpr std::string_view kind = "file";
+  std::string path;
+  double weld_tolerance{-1.0};  ///< [length]; negative: 1e-6 of the bounding box diagonal
+
+  static constexpr auto fields = std::tuple{
+      Field{"path", "-", "Mesh file (.msh, .stl, .obj), relative to the deck.", &MeshFile::path, any_number,
+            Presence::required},
+      Field{"weld_tolerance", "length", "STL nodes closer than this are one; by default 1e-6 of the box diagonal.",
+            &MeshFile::weld_tolerance},
+  };
+};
+
+struct Rotation {
+  Vec3d axis{0.0, 0.0, 1.0};
+  double angle_degrees{};
+  Vec3d point{};  ///< Fixed point of the rotation [length]
+
+  static constexpr auto fields = std::tuple{
+      Field{"axis", "-", "Rotation axis (any length but zero).", &Rotation::axis, any_number, Presence::required},
+      Field{"angle_degrees", "degree", "Angle by the right-hand rule.", &Rotation::angle_degrees, any_number,
+            Presence::required},
+      Field{"point", "length", "A point of the axis.", &Rotation::point},
+  };
+};
+
+/// Copies of a body on a regular grid.
+struct Array {
+  std::array<int, 3> count{1, 1, 1};
+  Vec3d pitch{};  ///< [length]
+
+  static constexpr Range count_range{1.0, 1.0e7, true, true, "1 to 10000000 in each direction"};
+  static constexpr auto fields = std::tuple{
+      Field{"count", "-", "Number of copies in x, y and z.", &Array::count, count_range, Presence::required},
+      Field{"pitch", "length", "Distance between copies in x, y and z.", &Array::pitch, any_number,
+            Presence::required},
+  };
+};
+
+/// Section of one part (physical group) of a body's mesh.
+struct PartSection {
+  std::string part;
+  std::string section;
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"part", "-", "Physical group (part) of the mesh.", &PartSection::part, any_number, Presence::required},
+      Field{"section", "-", "Name of the section.", &PartSection::section, any_number, Presence::required},
+  };
+};
+
+/// A set of elements that moves as a connected piece. Placement order: scale, rotations as listed, translate, array.
+struct BodyDescription {
+  std::string name;
+  std::variant<MeshGenerator, MeshFile> mesh;
+  std::string section;              ///< Section of all parts that `parts` does not name; may be empty.
+  std::vector<PartSection> parts;
+  double scale{1.0};
+  std::vector<Rotation> rotate;
+  Vec3d translate{};                ///< [length]
+  std::optional<Array> array;
+  Vec3d velocity{};                 ///< Initial velocity [length/time]
+  Vec3d angular_velocity{};         ///< Initial angular velocity about the centre of mass [1/time]
+  bool flip_normals{false};
+  Place place;
+  Place mesh_place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"name", "-", "Name of the body; copies of an array get [i,j,k] appended.", &BodyDescription::name,
+            any_number, Presence::required},
+      Field{"section", "-", "Section of every part not listed in `parts`.", &BodyDescription::section},
+      Field{"parts", "-", "Sections of single parts.", &BodyDescription::parts},
+      Field{"scale", "-", "Factor on all coordinates of the mesh.", &BodyDescription::scale, positive},
+      Field{"rotate", "-", "Rotations, applied in the order listed.", &BodyDescription::rotate},
+      Field{"translate", "length", "Shift, applied after scale and rotations.", &BodyDescription::translate},
+      Field{"array", "-", "Copies on a grid.", &BodyDescription::array},
+      Field{"velocity", "length/time", "Initial velocity of all nodes.", &BodyDescription::velocity},
+      Field{"angular_velocity", "1/time", "Initial angular velocity about the body's centre of mass.",
+            &BodyDescription::angular_velocity},
+      Field{"flip_normals", "-", "Turn all normals round.", &BodyDescription::flip_normals},
+  };
+};
+
+struct BoxSelection {
+  Vec3d low{};
+  Vec3d high{};
+
+  static constexpr auto fields = std::tuple{
+      Field{"low", "length", "Corner with the smallest coordinates.", &BoxSelection::low, any_number,
+            Presence::required},
+      Field{"high", "length", "Corner with the largest coordinates.", &BoxSelection::high, any_number,
+            Presence::required},
+  };
+};
+
+/// Named set of nodes: those of the named bodies (all when empty) that satisfy every selection given.
+struct NodeSet {
+  std::string name;
+  std::vector<std::string> bodies;  ///< Body names as in the deck (an array's name means all its copies).
+  bool boundary{false};             ///< Only nodes on free edges.
+  std::optional<BoxSelection> box;  ///< Only nodes whose initial position lies inside, bounds included.
+  std::string group;                ///< Only nodes of this physical group.
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"name", "-", "Name by which conditions and loads refer to the set.", &NodeSet::name, any_number,
+            Presence::required},
+      Field{"bodies", "-", "Bodies to choose from; all when left out.", &NodeSet::bodies},
+      Field{"boundary", "-", "Only nodes on free edges.", &NodeSet::boundary},
+      Field{"box", "length", "Only nodes whose initial position lies in the box.", &NodeSet::box},
+      Field{"group", "-", "Only nodes of this physical group.", &NodeSet::group},
+  };
+};
+
+/// Degrees of freedom held at rest: "x", "y", "z" translations, "rx", "ry", "rz" rotations.
+struct Fixed {
+  std::string set;
+  std::vector<std::string> dofs{"x", "y", "z", "rx", "ry", "rz"};
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"set", "-", "Node set.", &Fixed::set, any_number, Presence::required},
+      Field{"dofs", "-", "Which of x, y, z, rx, ry, rz are held; all when left out.", &Fixed::dofs},
+  };
+};
+
+/// Velocity prescribed as scale x curve(time) on one degree of freedom.
+struct Prescribed {
+  std::string set;
+  std::string dof;
+  double velocity{};  ///< [length/time], or [1/time] for rotations
+  std::string curve;  ///< Factor in time; 1 when empty.
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"set", "-", "Node set.", &Prescribed::set, any_number, Presence::required},
+      Field{"dof", "-", "One of x, y, z, rx, ry, rz.", &Prescribed::dof, any_number, Presence::required},
+      Field{"velocity", "length/time or 1/time", "Velocity, multiplied by the curve.", &Prescribed::velocity,
+            any_number, Presence::required},
+      Field{"curve", "-", "Factor in time; 1 when left out.", &Prescribed::curve},
+  };
+};
+
+/// Mirror symmetry: no velocity along the normal, no rotation about axes in the plane.
+struct Symmetry {
+  std::string set;
+  Vec3d normal{};
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"set", "-", "Node set.", &Symmetry::set, any_number, Presence::required},
+      Field{"normal", "-", "Normal of the plane of symmetry.", &Symmetry::normal, any_number, Presence::required},
+  };
+};
+
+struct Gravity {
+  Vec3d acceleration{};  ///< [length/time^2]
+  std::string curve;
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"acceleration", "length/time^2", "Acceleration of free fall.", &Gravity::acceleration, any_number,
+            Presence::required},
+      Field{"curve", "-", "Factor in time; 1 when left out.", &Gravity::curve},
+  };
+};
+
+/// Pressure on the current faces, positive against the normal (it pushes where the normal points away from).
+struct Pressure {
+  std::vector<std::string> bodies;
+  std::string part;   ///< Only this part of the bodies' meshes; all when empty.
+  double value{};     ///< [force/length^2]
+  std::string curve;
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"bodies", "-", "Bodies whose faces are loaded.", &Pressure::bodies, any_number, Presence::required},
+      Field{"part", "-", "Only this part (physical group) of their meshes.", &Pressure::part},
+      Field{"value", "force/length^2", "Pressure, acting against the face normals; follows the faces.",
+            &Pressure::value, any_number, Presence::required},
+      Field{"curve", "-", "Factor in time; 1 when left out.", &Pressure::curve},
+  };
+};
+
+/// The same force and moment on every node of a set, or a total shared equally among them.
+struct NodalForce {
+  std::string set;
+  Vec3d force{};   ///< [force]
+  Vec3d moment{};  ///< [force*length]
+  bool total{false};
+  std::string curve;
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"set", "-", "Node set.", &NodalForce::set, any_number, Presence::required},
+      Field{"force", "force", "Force on each node of the set.", &NodalForce::force},
+      Field{"moment", "force*length", "Moment on each node of the set.", &NodalForce::moment},
+      Field{"total", "-", "The values are totals, shared equally by the nodes of the set.", &NodalForce::total},
+      Field{"curve", "-", "Factor in time; 1 when left out.", &NodalForce::curve},
+  };
+};
+
+/// Fixed barrier: a half space that nodes cannot enter. It belongs to every island and joins none.
+struct RigidPlane {
+  std::string name;
+  Vec3d point{};             ///< [length]
+  Vec3d normal{};            ///< Points to the free side; normalised when the model is built.
+  double stiffness{-1.0};    ///< Penalty stiffness per node [force/length]; negative: from the element step.
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"name", "-", "Name used in histories.", &RigidPlane::name, any_number, Presence::required},
+      Field{"point", "length", "A point of the plane.", &RigidPlane::point, any_number, Presence::required},
+      Field{"normal", "-", "Normal, pointing to the free side.", &RigidPlane::normal, any_number, Presence::required},
+      Field{"stiffness", "force/length", "Penalty stiffness per node; from the element step when left out.",
+            &RigidPlane::stiffness, positive},
+  };
+};
+
+struct ContactSettings {
+  bool enabled{true};
+  bool self{true};              ///< Bodies touch themselves.
+  double penalty_scale{1.0};    ///< Factor on the stiffness that the element step gives [-]
+  double stiffness{-1.0};       ///< Penalty stiffness per pair [force/length]; negative: from the element step.
+  std::vector<std::array<std::string, 2>> exclude;  ///< Pairs of bodies that do not touch; twice the same: itself.
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"enabled", "-", "Contact between all bodies.", &ContactSettings::enabled},
+      Field{"self", "-", "Contact of each body with itself.", &ContactSettings::self},
+      Field{"penalty_scale", "-", "Factor on the penalty stiffness that the element step gives.",
+            &ContactSettings::penalty_scale, positive},
+      Field{"stiffness", "force/length", "Penalty stiffness of every pair; from the element step when left out.",
+            &ContactSettings::stiffness, positive},
+      Field{"exclude", "-", "Pairs of body names that do not touch; the same name twice: no self-contact.",
+            &ContactSettings::exclude},
+  };
+};
+
+struct RunSettings {
+  double duration{};               ///< [time]
+  double safety{0.9};              ///< Step over the critical step [-]
+  double damping{0.0};             ///< Mass-proportional damping coefficient [1/time]
+  double energy_drift_limit{0.05}; ///< Largest relative energy imbalance [-]
+  double step_collapse{1.0e-3};    ///< Stop when the critical step falls below this part of the first one [-]
+  double drilling{0.1};            ///< Drilling tie factor beta [-]
+  int epoch_steps{64};             ///< Most steps between two looks at the interaction graph
+
+  static constexpr Range safety_range{0.0, 1.0, false, true, "> 0 and <= 1"};
+  static constexpr Range drilling_range{0.0, 1.0, true, true, "0 to 1"};
+  static constexpr Range collapse_range{0.0, 1.0, true, false, ">= 0 and < 1"};
+  static constexpr Range epoch_range{1.0, 100000.0, true, true, "1 to 100000"};
+  static constexpr auto fields = std::tuple{
+      Field{"duration", "time", "Time to integrate over.", &RunSettings::duration, positive, Presence::required},
+      Field{"safety", "-", "Step as a part of the critical step.", &RunSettings::safety, safety_range},
+      Field{"damping", "1/time", "Mass-proportional damping: force -damping x mass x velocity on every node.",
+            &RunSettings::damping, non_negative},
+      Field{"energy_drift_limit", "-", "The run stops when the relative energy imbalance exceeds this.",
+            &RunSettings::energy_drift_limit, positive},
+      Field{"step_collapse", "-", "The run stops when the critical step falls below this part of the first one.",
+            &RunSettings::step_collapse, collapse_range},
+      Field{"drilling", "-", "Factor of the drilling tie; 0 switches it off.", &RunSettings::drilling, drilling_range},
+      Field{"epoch_steps", "-", "Most steps between two looks at the interaction graph.", &RunSettings::epoch_steps,
+            epoch_range},
+  };
+};
+
+/// All the physics of a deck.
+struct Description {
+  RunSettings run;
+  std::vector<Curve> curves;
+  std::vector<Material> materials;
+  std::vector<Section> sections;
+  std::vector<BodyDescription> bodies;
+  std::vector<NodeSet> node_sets;
+  std::vector<Fixed> fixed;
+  std::vector<Prescribed> prescribed;
+  std::vector<Symmetry> symmetry;
+  std::vector<Gravity> gravity;
+  std::vector<Pressure> pressure;
+  std::vector<NodalForce> forces;
+  std::vector<RigidPlane> planes;
+  ContactSettings contact;
+};
+
+}  // namespace fexp::model

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/aligned_vector.hpp"
+#include "base/index.hpp"
+#include "base/vec3.hpp"
+#include "model/description.hpp"
+
+namespace fexp::model {
+
+/// Elements are stored in blocks of this many lanes, whatever width the kernels use, so that the layout of the state
+/// does not depend on the processor.
+inline constexpr Index block_lanes = 8;
+
+/// Up to block_lanes consecutive elements of one body with one section.
+struct ElementBlock {
+  Index first{};    ///< First element; the block holds first .. first+count-1.
+  Index count{};    ///< Used lanes; the rest repeats the last element and contributes nothing.
+  Index section{};
+  Index body{};
+};
+
+/// Material and thickness as the element kernel reads them.
+struct SectionData {
+  std::string name;
+  physics::AnyMaterial law;
+  physics::PlaneStressModuli moduli{};
+  double density{};    ///< [mass/length^3]
+  double thickness{};  ///< [length]
+};
+
+/// A connected set of elements: the unit of the interaction graph, of energy sums, of hashes and of migration.
+/// Its nodes, elements and blocks are contiguous, in ascending order of body.
+struct Body {
+  std::string name;
+  std::string family;  ///< Name in the deck; copies of an array share it.
+  Index description{}; ///< Index into Description::bodies.
+  IndexRange nodes;
+  IndexRange elements;
+  IndexRange blocks;
+  IndexRange fixed;       ///< Into Model::fixed.
+  IndexRange prescribed;  ///< Into Model::prescribed.
+  IndexRange symmetry;    ///< Into Model::symmetry.
+  IndexRange pressure;    ///< Into Model::pressure.
+  IndexRange forces;      ///< Into Model::forces.
+  bool barrier{};         ///< Every node is held in all degrees of freedom: part of every island, joins none.
+  double mass{};          ///< [mass]
+};
+
+/// Degrees of freedom of one node held at rest; bit d is degree of freedom d (x y z rx ry rz).
+struct FixedNode {
+  Index node{};
+  std::uint8_t mask{};
+};
+
+struct PrescribedNode {
+  Index node{};
+  std::int8_t dof{};   ///< 0..5
+  double velocity{};   ///< [length/time] or [1/time]
+  Index curve{no_index};
+};
+
+struct SymmetryNode {
+  Index node{};
+  Vec3d normal{};  ///< Unit vector.
+};
+
+struct PressureLoad {
+  Index element{};
+  double value{};  ///< [force/length^2]
+  Index curve{no_index};
+};
+
+struct NodeLoad {
+  Index node{};
+  Vec3d force{};   ///< [force]
+  Vec3d moment{};  ///< [force*length]
+  Index curve{no_index};
+};
+
+struct GravityLoad {
+  Vec3d acceleration{};  ///< [length/time^2]
+  Index curve{no_index};
+};
+
+struct NamedNodes {
+  std::string name;
+  std::vector<Index> nodes;  ///< Ascending.
+};
+
+/// The frozen model: everything that does not change during a run. Built by build_model, read by everyone.
+struct Model {
+  // Nodes, shape [nodes]
+  std::vector<Vec3d> reference_position;     ///< Initial positions X [length]
+  std::vector<Vec3d> initial_velocity;       ///< [length/time]
+  std::vector<Vec3d> initial_rotation_rate;  ///< [1/time]
+  std::vector<double> mass;                  ///< Lumped mass [mass]
+  std::vector<double> inertia;               ///< Lumped isotropic, scaled rotary inertia [mass*length^2]
+  std::vector<double> half_thickness;        ///< Half of the thickest shell at the node [length]
+  /// Penalty stiffness of the node, c^2 m / dt^2 from its own elements' critical step, times penalty_scale
+  /// [force/length]. A pair's stiffness is the series combination of its node and the softest triangle corner.
+  std::vector<double> contact_stiffness;
+  std::vector<Index> node_body;
+  std::vector<Index> corner_start;           ///< CSR over nodes, shape [nodes + 1]
+  std::vector<Index> corner;                 ///< 3 x element + corner, ascending within a node, shape [3 x elements]
+  std::vector<std::int64_t> node_label;      ///< The user's id of the node.
+
+  // Elements, shape [elements]
+  std::vector<std::array<Index, 3>> triangle;   ///< Corner nodes
+  std::vector<std::array<Index, 3>> neighbour;  ///< Element across edge (a, a+1), or no_index
+  std::vector<Index> element_block;
+  std::vector<Index> element_part;              ///< Part (physical group) index within the body's mesh
+  std::vector<double> reference_area;           ///< [length^2]
+  std::vector<std::int64_t> element_label;      ///< The user's id of the element.
+
+  std::vector<ElementBlock> blocks;
+  std::vector<SectionData> sections;
+  std::vector<Body> bodies;
+
+  // Conditions and loads, each sorted by node or element; a body's own lie in the ranges its Body names.
+  std::vector<FixedNode> fixed;
+  std::vector<PrescribedNode> prescribed;
+  std::vector<SymmetryNode> symmetry;
+  std::vector<PressureLoad> pressure;
+  std::vector<NodeLoad> forces;
+  std::vector<GravityLoad> gravity;
+  std::vector<Curve> curves;
+  std::vector<RigidPlane> planes;  ///< Normals are unit vectors.
+  std::vector<NamedNodes> node_sets;
+
+  ContactSettings contact;
+  /// Pairs of bodies (first <= second, sorted) that do not touch.
+  std::vector<std::pair<Index, Index>> excluded_pairs;
+  RunSettings run;
+  double first_critical_step{};     ///< Smallest element critical step in the reference state [time]
+  Index first_critical_element{};   ///< The element that sets it
+
+  [[nodiscard]] Index node_count() const noexcept { return static_cast<Index>(reference_position.size()); }
+  [[nodiscard]] Index element_count() const noexcept { return static_cast<Index>(triangle.size()); }
+  [[nodiscard]] Index body_count() const noexcept { return static_cast<Index>(bodies.size()); }
+  [[nodiscard]] Index block_count() const noexcept { return static_cast<Index>(blocks.size()); }
+  [[nodiscard]] const SectionData& section_of(Index element) const {
+    return sections[at(blocks[at(element_block[at(element)])].section)];
+  }
+  /// True when bodies a and b (which may be the same) can touch by the deck's contact settings.
+  [[nodiscard]] bool can_touch(Index a, Index b) const noexcept;
+};
+
+/// Value of curve `index` at `time`; 1 when index is no_index.
+[[nodiscard]] double curve_value(const Model& model, Index index, double time) noexcept;
+
+}  // namespace fexp::model

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/state.hpp"
+
+#include <bit>
+#include <cstring>
+#include <utility>
+
+#include "base/hash.hpp"
+#include "parallel/parallel.hpp"
+
+namespace fexp::model {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the canonical bytes are written as they stand in memory");
+
+/// Fills bytes that are already there, front to back.
+class Writer {
+ public:
+  explicit Writer(std::byte* next) : next_(next) {}
+
+  template <class T>
+  void write(const T* records, std::size_t count) {
+    std::memcpy(next_, records, count * sizeof(T));
+    next_ += count * sizeof(T);
+  }
+
+ private:
+  std::byte* next_;
+};
+
+/// Takes bytes front to back; whoever reads has made sure that there are enough.
+class Reader {
+ public:
+  explicit Reader(const std::byte* next) : next_(next) {}
+
+  template <class T>
+  void read(T* records, std::size_t count) {
+    std::memcpy(records, next_, count * sizeof(T));
+    next_ += count * sizeof(T);
+  }
+
+ private:
+  const std::byte* next_;
+};
+
+// Records of doubles alone have no padding and are copied whole.
+static_assert(sizeof(NodeMotion) == 9 * sizeof(double) && sizeof(NodeAcceleration) == 6 * sizeof(double));
+static_assert(sizeof(BodyLedger) == 10 * sizeof(double));
+
+constexpr std::size_t side_bytes = 2 * sizeof(Index) + sizeof(std::int8_t);
+
+/// Bytes in front of the number of sides.
+std::size_t bytes_before_sides(const Body& body) {
+  return at(body.nodes.size()) * (sizeof(NodeMotion) + sizeof(NodeAcceleration)) +
+         at(body.elements.size()) * element_rows * sizeof(double);
+}
+
+std::size_t bytes_of_body(const Body& body, std::size_t sides) {
+  return bytes_before_sides(body) + sizeof(std::int64_t) + sides * side_bytes + sizeof(BodyLedger);
+}
+
+/// True when the sides are such as the body can have: its own nodes, elements of the model, sorted, +1 or -1.
+bool are_sides_of(const Model& model, const Body& body, const std::vector<ContactSide>& sides) {
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const ContactSide& s = sides[i];
+    const bool known = body.nodes.contains(s.node) && s.element >= 0 && s.element < model.element_count() &&
+                       (s.side == 1 || s.side == -1);
+    if (!known || (i > 0 && std::pair{sides[i - 1].node, sides[i - 1].element} >= std::pair{s.node, s.element})) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::size_t row_offset(Index block, Index row) { return (at(block) * element_rows + at(row)) * at(block_lanes); }
+
+}  // namespace
+
+State initial_state(const Model& model) {
+  State state;
+  state.motion.resize(model.reference_position.size());
+  state.acceleration.resize(model.reference_position.size());
+  for (std::size_t n = 0; n < state.motion.size(); ++n) {
+    state.motion[n] = {model.reference_position[n], model.initial_velocity[n], model.initial_rotation_rate[n]};
+  }
+  for (const FixedNode& fixed : model.fixed) {
+    NodeMotion& motion = state.motion[at(fixed.node)];
+    double* const components[6] = {&motion.velocity.x,      &motion.velocity.y,      &motion.velocity.z,
+                                   &motion.rotation_rate.x, &motion.rotation_rate.y, &motion.rotation_rate.z};
+    for (unsigned d = 0; d < 6; ++d) {
+      if ((fixed.mask >> d & 1U) != 0) {
+        *components[d] = 0.0;
+      }
+    }
+  }
+  state.history.assign(model.blocks.size() * element_rows * at(block_lanes), 0.0);
+  state.sides.resize(model.bodies.size());
+  state.ledger.resize(model.bodies.size());
+  return state;
+}
+
+// Order: motion of the nodes (x, v, omega), their accelerations (a, alpha), element rows block by block (used lanes
+// only), the number of sides (64 bits) and the sides (node, element, side: 32, 32 and 8 bits), the ledger. All numbers
+// are little-endian and stand side by side.
+void append_body_bytes(const Model& model, const State& state, Index body, std::vector<std::byte>& bytes) {
+  const Body& owner = model.bodies[at(body)];
+  const std::vector<ContactSide>& sides = state.sides[at(body)];
+  const std::size_t before = bytes.size();
+  bytes.resize(before + bytes_of_body(owner, sides.size()));
+  Writer writer(bytes.data() + before);
+  writer.write(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));
+  writer.write(state.acceleration.data() + owner.nodes.begin, at(owner.nodes.size()));
+  for (Index b = owner.blocks.begin; b < owner.blocks.end; ++b) {
+    for (Index row = 0; row < element_rows; ++row) {
+      writer.write(state.history.data() + row_offset(b, row), at(model.blocks[at(b)].count));
+    }
+  }
+  const auto count = static_cast<std::int64_t>(sides.size());
+  writer.write(&count, 1);
+  for (const ContactSide& side : sides) {
+    writer.write(&side.node, 1);
+    writer.write(&side.element, 1);
+    writer.write(&side.side, 1);
+  }
+  writer.write(&state.ledger[at(body)], 1);
+}
+
+bool read_body_bytes(const Model& model, std::span<const std::byte> bytes, Index body, State& state) {
+  const Body& owner = model.bodies[at(body)];
+  const std::size_t front = bytes_before_sides(owner);
+  if (bytes.size() < bytes_of_body(owner, 0)) {
+    return false;
+  }
+  std::int64_t count = 0;
+  Reader(bytes.data() + front).read(&count, 1);
+  const std::size_t room = (bytes.size() - bytes_of_body(owner, 0)) / side_bytes;
+  if (count < 0 || static_cast<std::uint64_t>(count) > room ||
+      bytes.size() != bytes_of_body(owner, static_cast<std::size_t>(count))) {
+    return false;
+  }
+  Reader rear(bytes.data() + front + sizeof(count));
+  std::vector<ContactSide> sides(static_cast<std::size_t>(count));
+  for (ContactSide& side : sides) {
+    rear.read(&side.node, 1);
+    rear.read(&side.element, 1);
+    rear.read(&side.side, 1);
+  }
+  if (!are_sides_of(model, owner, sides)) {
+    return false;
+  }
+  state.sides[at(body)] = std::move(sides);
+  rear.read(&state.ledger[at(body)], 1);
+  Reader reader(bytes.data());
+  reader.read(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));
+  reader.read(state.acceleration.data() + owner.nodes.begin, at(owner.nodes.size()));
+  for (Index b = owner.blocks.begin; b < owner.blocks.end; ++b) {
+    for (Index row = 0; row < element_rows; ++row) {
+      reader.read(state.history.data() + row_offset(b, row), at(model.blocks[at(b)].count));
+    }
+  }
+  return true;
+}
+
+std::uint64_t body_hash(const Model& model, const State& state, Index body) {
+  std::vector<std::byte> bytes;
+  append_body_bytes(model, state, body, bytes);
+  return hash_bytes(bytes);
+}
+
+std::uint64_t state_hash(const Model& model, const State& state) {
+  std::vector<std::uint64_t> hashes(model.bodies.size());
+  parallel::for_each(model.body_count(), 1, [&](Index body) { hashes[at(body)] = body_hash(model, state, body); });
+  std::vector<std::byte> bytes(sizeof(state.step) + sizeof(state.time) + hashes.size() * sizeof(std::uint64_t));
+  Writer writer(bytes.data());
+  writer.write(&state.step, 1);
+  writer.write(&state.time, 1);
+  writer.write(hashes.data(), hashes.size());
+  return hash_bytes(bytes);
+}
+
+}  // namespace fexp::model

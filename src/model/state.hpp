@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/aligned_vector.hpp"
+#include "base/index.hpp"
+#include "base/vec3.hpp"
+#include "model/model.hpp"
+
+namespace fexp::model {
+
+/// Motion of one node, kept in one record because elements and contact gather all of it together.
+struct NodeMotion {
+  Vec3d position;       ///< x [length]
+  Vec3d velocity;       ///< v [length/time]; at t(n) between steps, at t(n+1/2) inside a step
+  Vec3d rotation_rate;  ///< omega [1/time], likewise
+};
+
+struct NodeAcceleration {
+  Vec3d linear;   ///< a [length/time^2]
+  Vec3d angular;  ///< alpha [1/time^2]
+};
+
+/// Rows of the element history; storage is [block][row][lane].
+enum ElementRow : Index {
+  row_nxx,
+  row_nyy,
+  row_nxy,  // membrane resultants N [force/length], element frame
+  row_mxx,
+  row_myy,
+  row_mxy,  // bending resultants M [force]
+  row_qxz,
+  row_qyz,  // transverse shear resultants Q [force/length]
+  row_drill_1,
+  row_drill_2,
+  row_drill_3,  // relative drilling rotation of the corners [-]
+  row_energy,   // internal energy of the element [force*length]
+  element_rows
+};
+
+/// Side of a triangle on which a node stands, remembered while they are within contact distance: +1 where the
+/// triangle's normal points, -1 behind.
+struct ContactSide {
+  Index node{};
+  Index element{};
+  std::int8_t side{};
+
+  friend bool operator==(const ContactSide&, const ContactSide&) = default;
+};
+
+/// Quantities of one body that are integrated over the run or belong to the last evaluated forces.
+struct BodyLedger {
+  double external_work{};            ///< Loads, gravity and prescribed motion [force*length], integrated
+  double damping_work{};             ///< Work taken out by damping (>= 0) [force*length], integrated
+  double contact_energy{};           ///< Potential of the pairs whose node is this body's [force*length]
+  double barrier_energy{};           ///< Potential of rigid planes [force*length]
+  Vec3d external_impulse{};          ///< Loads, planes, damping and constraints [force*time], integrated
+  Vec3d external_angular_impulse{};  ///< The same about the origin [force*length*time], integrated
+};
+
+/// The state at a step boundary: all that a restart or another machine needs.
+struct State {
+  std::int64_t step{};
+  double time{};                                // [time]
+  std::vector<NodeMotion> motion;               // [nodes]
+  std::vector<NodeAcceleration> acceleration;   // [nodes]
+  AlignedVector<double> history;                // [blocks][element_rows][block_lanes]
+  std::vector<std::vector<ContactSide>> sides;  // [bodies]: sorted by (node, element); nodes of that body
+  std::vector<BodyLedger> ledger;               // [bodies]
+};
+
+/// State at time zero: reference positions, initial velocities, no stress; accelerations are left zero.
+[[nodiscard]] State initial_state(const Model& model);
+
+/// Appends the canonical little-endian bytes of one body's state: the one form used for hashes, checkpoints and the
+/// wire. Padding lanes and struct padding are not part of it.
+void append_body_bytes(const Model& model, const State& state, Index body, std::vector<std::byte>& bytes);
+
+/// Takes one body's state from its canonical bytes; false, with the state untouched, when they do not fit the body.
+[[nodiscard]] bool read_body_bytes(const Model& model, std::span<const std::byte> bytes, Index body, State& state);
+
+/// Hash of one body's canonical bytes.
+[[nodiscard]] std::uint64_t body_hash(const Model& model, const State& state, Index body);
+
+/// Hash over step, time and all body hashes in ascending body order.
+[[nodiscard]] std::uint64_t state_hash(const Model& model, const State& state);
+
+/// The value of one element row.
+[[nodiscard]] inline double element_value(const Model& model, const State& state, Index element, ElementRow row) {
+  const Index block = model.element_block[at(element)];
+  const Index lane = element - model.blocks[at(block)].first;
+  return state.history[(at(block) * element_rows + at(row)) * at(block_lanes) + at(lane)];
+}
+
+}  // namespace fexp::model

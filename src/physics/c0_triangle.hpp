@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "base/pack.hpp"
+#include "base/vec3.hpp"
+#include "physics/plane_stress_material.hpp"
+
+/// Belytschko's C0 triangle with one-point quadrature: T. Belytschko, H. Stolarski, N. Carpenter, A C0 triangular plate
+/// element with one-point quadrature, IJNME 20 (1984) 787-802 [BSC84], in rate form in a co-rotated frame.
+///
+/// Deviations from the paper: strain increments use the geometry at mid-step and forces the geometry at the end of the
+/// step (the first keeps rigid rotation free of strain, the second conserves angular momentum); a drilling tie and an
+/// isotropic scaled rotary inertia are added. docs/theory.md derives all of it.
+namespace fexp::physics {
+
+/// What a shell section means to the element.
+struct ShellSection {
+  double thickness{};        ///< t [length]
+  PlaneStressModuli moduli{};
+  double drilling{};         ///< Drilling factor beta [-]
+
+  static constexpr double shear_factor = 5.0 / 6.0;
+};
+
+/// Local frame and coordinates of a triangle: nodes (0,0), (x2,0), (x3,y3) in the plane of e1, e2.
+template <class T>
+struct TriangleFrame {
+  Vec3<T> e1, e2, e3;
+  T x2, x3, y3;
+
+  [[nodiscard]] T doubled_area() const noexcept { return x2 * y3; }
+};
+
+/// Frame with e1 along side 1-2 and e3 along the normal. `a` = X2 - X1 and `b` = X3 - X1 [length].
+template <class T>
+[[nodiscard]] inline TriangleFrame<T> triangle_frame(const Vec3<T>& a, const Vec3<T>& b) noexcept {
+  const Vec3<T> n = cross(a, b);
+  const T inverse_side = T(1.0) / square_root(dot(a, a));
+  const T inverse_normal = T(1.0) / square_root(dot(n, n));
+  TriangleFrame<T> frame;
+  frame.e1 = inverse_side * a;
+  frame.e3 = inverse_normal * n;
+  frame.e2 = cross(frame.e3, frame.e1);
+  frame.x2 = dot(a, frame.e1);
+  frame.x3 = dot(b, frame.e1);
+  frame.y3 = dot(b, frame.e2);
+  return frame;
+}
+
+/// Shape function derivatives b_i = dN_i/dx, c_i = dN_i/dy of corners 2 and 3; b3 = 0, and corner 1 is minus the sum.
+template <class T>
+struct ShapeDerivatives {
+  T b2, c2, c3;  // [1/length]
+
+  explicit ShapeDerivatives(const TriangleFrame<T>& f) noexcept
+      : b2(T(1.0) / f.x2), c2(), c3(T(1.0) / f.y3) {
+    c2 = -(f.x3 * b2) * c3;
+  }
+};
+
+/// Rows of 12 A Bs, the assumed transverse shear of [BSC84] as it acts on (thx1, thy1, thx2, thy2, thx3, thy3); the
+/// zero in the first row is left out of the sums.
+template <class T>
+struct ShearRows {
+  std::array<T, 6> xz, yz;  // [length^2]
+
+  explicit ShearRows(const TriangleFrame<T>& f) noexcept {
+    const T y33 = f.y3 * f.y3;
+    const T x2y3 = f.x2 * f.y3;
+    xz = {-y33, f.y3 * (f.x2 + f.x2 + f.x3), y33, f.y3 * (T(3.0) * f.x2 - f.x3), T(0.0), x2y3};
+    yz = {f.y3 * (f.x3 - f.x2 - f.x2), f.x2 * f.x2 - f.x3 * f.x3, -(f.y3 * (f.x2 + f.x3)),
+          f.x3 * (f.x3 - f.x2 - f.x2), T(-3.0) * x2y3,            f.x2 * (f.x3 + f.x3 - f.x2)};
+  }
+};
+
+/// Strain increments of one step: membrane, curvature, transverse shear, relative drilling of the corners.
+template <class T>
+struct ShellIncrement {
+  T exx, eyy, gxy;
+  T kxx, kyy, kxy;
+  T gxz, gyz;
+  std::array<T, 3> drill;
+};
+
+/// Resultants and drilling rotations, accumulated in the co-rotated frame, and the internal energy.
+template <class T>
+struct ShellResultants {
+  T nxx, nyy, nxy;           ///< [force/length]
+  T mxx, myy, mxy;           ///< [force]
+  T qxz, qyz;                ///< [force/length]
+  std::array<T, 3> drill;    ///< [-]
+  T energy;                  ///< [force*length]
+};
+
+/// Strain increments dt x rate for corner velocities v and rotation rates w, in the frame of the mid-step geometry.
+template <class T>
+[[nodiscard]] inline ShellIncrement<T> strain_increment(const TriangleFrame<T>& f, const std::array<Vec3<T>, 3>& v,
+                                                        const std::array<Vec3<T>, 3>& w, const T& dt) noexcept {
+  const ShapeDerivatives<T> d(f);
+  const ShearRows<T> shear(f);
+  const Vec3<T> v12 = v[1] - v[0];
+  const Vec3<T> v13 = v[2] - v[0];
+  const T u2 = dt * dot(v12, f.e1), v2 = dt * dot(v12, f.e2), w2 = dt * dot(v12, f.e3);
+  const T u3 = dt * dot(v13, f.e1), v3 = dt * dot(v13, f.e2), w3 = dt * dot(v13, f.e3);
+  std::array<T, 3> tx, ty, tz;
+  for (std::size_t i = 0; i < 3; ++i) {
+    tx[i] = dt * dot(w[i], f.e1);
+    ty[i] = dt * dot(w[i], f.e2);
+    tz[i] = dt * dot(w[i], f.e3);
+  }
+  const T tx2 = tx[1] - tx[0], tx3 = tx[2] - tx[0];
+  const T ty2 = ty[1] - ty[0], ty3 = ty[2] - ty[0];
+
+  ShellIncrement<T> e;
+  e.exx = d.b2 * u2;
+  e.eyy = d.c2 * v2 + d.c3 * v3;
+  const T u_y = d.c2 * u2 + d.c3 * u3;
+  const T v_x = d.b2 * v2;
+  e.gxy = u_y + v_x;
+  e.kxx = d.b2 * ty2;
+  e.kyy = -(d.c2 * tx2 + d.c3 * tx3);
+  e.kxy = (d.c2 * ty2 + d.c3 * ty3) - d.b2 * tx2;
+
+  const T inverse_12a = T(1.0 / 6.0) * d.b2 * d.c3;
+  const T row_xz = shear.xz[0] * tx[0] + shear.xz[1] * ty[0] + shear.xz[2] * tx[1] + shear.xz[3] * ty[1] +
+                   shear.xz[5] * ty[2];
+  const T row_yz = shear.yz[0] * tx[0] + shear.yz[1] * ty[0] + shear.yz[2] * tx[1] + shear.yz[3] * ty[1] +
+                   shear.yz[4] * tx[2] + shear.yz[5] * ty[2];
+  e.gxz = d.b2 * w2 + inverse_12a * row_xz;
+  e.gyz = (d.c2 * w2 + d.c3 * w3) + inverse_12a * row_yz;
+
+  const T spin = T(0.5) * (v_x - u_y);
+  for (std::size_t i = 0; i < 3; ++i) {
+    e.drill[i] = tz[i] - spin;
+  }
+  return e;
+}
+
+/// Drilling stiffness k_d = beta G t (A/3) min(1, t^2/A) [force*length].
+template <class T>
+[[nodiscard]] inline T drilling_stiffness(const ShellSection& s, const T& area) noexcept {
+  return T(s.drilling * s.moduli.shear * s.thickness / 3.0) * minimum(area, T(s.thickness * s.thickness));
+}
+
+/// Linear elastic update S += C de and of the energy by the mean of old and new resultants over the area.
+template <class T>
+inline void update_elastic(const ShellSection& s, const T& area, const ShellIncrement<T>& e,
+                           ShellResultants<T>& r) noexcept {
+  const double t = s.thickness;
+  const double bend = t * t * t / 12.0;
+  const T cm(t * s.moduli.direct), cx(t * s.moduli.cross), cg(t * s.moduli.shear);
+  const T bm(bend * s.moduli.direct), bx(bend * s.moduli.cross), bg(bend * s.moduli.shear);
+  const T cs(ShellSection::shear_factor * t * s.moduli.shear);
+  const T kd = drilling_stiffness(s, area);
+
+  T density(0.0);
+  const auto add = [&density](T& resultant, const T& increment, const T& strain) {
+    const T half = T(0.5) * increment;
+    density = density + (resultant + half) * strain;
+    resultant = resultant + increment;
+  };
+  add(r.nxx, cm * e.exx + cx * e.eyy, e.exx);
+  add(r.nyy, cx * e.exx + cm * e.eyy, e.eyy);
+  add(r.nxy, cg * e.gxy, e.gxy);
+  add(r.mxx, bm * e.kxx + bx * e.kyy, e.kxx);
+  add(r.myy, bx * e.kxx + bm * e.kyy, e.kyy);
+  add(r.mxy, bg * e.kxy, e.kxy);
+  add(r.qxz, cs * e.gxz, e.gxz);
+  add(r.qyz, cs * e.gyz, e.gyz);
+  T drill(0.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    drill = drill + (r.drill[i] + T(0.5) * e.drill[i]) * e.drill[i];
+    r.drill[i] = r.drill[i] + e.drill[i];
+  }
+  r.energy = r.energy + (area * density + kd * drill);
+}
+
+/// Internal corner forces and moments A B^T S in global directions, in the frame of the geometry at the step's end.
+template <class T>
+inline void corner_forces(const ShellSection& s, const TriangleFrame<T>& f, const ShellResultants<T>& r,
+                          std::array<Vec3<T>, 3>& force, std::array<Vec3<T>, 3>& moment) noexcept {
+  const ShearRows<T> shear(f);
+  const T kd = drilling_stiffness(s, T(0.5) * f.doubled_area());
+  const T half_drill = T(0.5) * (kd * (r.drill[0] + r.drill[1] + r.drill[2]));
+  // A b2, A c2, A c3 [length]
+  const T ab2 = T(0.5) * f.y3, ac2 = T(-0.5) * f.x3, ac3 = T(0.5) * f.x2;
+  const ShapeDerivatives<T> d(f);
+
+  const T f2x = ab2 * r.nxx + ac2 * r.nxy + half_drill * d.c2;
+  const T f2y = ac2 * r.nyy + ab2 * r.nxy - half_drill * d.b2;
+  const T f2z = ab2 * r.qxz + ac2 * r.qyz;
+  const T f3x = ac3 * r.nxy + half_drill * d.c3;
+  const T f3y = ac3 * r.nyy;
+  const T f3z = ac3 * r.qyz;
+
+  const T m2x = -(ac2 * r.myy) - ab2 * r.mxy;
+  const T m2y = ab2 * r.mxx + ac2 * r.mxy;
+  const T m3x = -(ac3 * r.myy);
+  const T m3y = ac3 * r.mxy;
+  const T qx = T(1.0 / 12.0) * r.qxz, qy = T(1.0 / 12.0) * r.qyz;
+  const std::array<T, 3> mx = {shear.xz[0] * qx + shear.yz[0] * qy - (m2x + m3x),
+                               m2x + (shear.xz[2] * qx + shear.yz[2] * qy), m3x + shear.yz[4] * qy};
+  const std::array<T, 3> my = {shear.xz[1] * qx + shear.yz[1] * qy - (m2y + m3y),
+                               m2y + (shear.xz[3] * qx + shear.yz[3] * qy),
+                               m3y + (shear.xz[5] * qx + shear.yz[5] * qy)};
+
+  force[1] = f2x * f.e1 + f2y * f.e2 + f2z * f.e3;
+  force[2] = f3x * f.e1 + f3y * f.e2 + f3z * f.e3;
+  force[0] = -(force[1] + force[2]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    moment[i] = mx[i] * f.e1 + my[i] * f.e2 + (kd * r.drill[i]) * f.e3;
+  }
+}
+
+/// Lumped translational mass m = rho t A / 3 of one corner [mass].
+[[nodiscard]] constexpr double corner_mass(double density, double thickness, double area) noexcept {
+  return density * thickness * area / 3.0;
+}
+
+/// Scaled isotropic rotary inertia m (A/4.5 + t^2/12) of one corner [mass*length^2]; the physical m t^2/12 alone would
+/// make the critical step far too small.
+[[nodiscard]] constexpr double corner_inertia(double mass, double thickness, double area) noexcept {
+  return mass * (area / 4.5 + thickness * thickness / 12.0);
+}
+
+}  // namespace fexp::physics

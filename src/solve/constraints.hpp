@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.hpp"
+#include "model/state.hpp"
+#include "solve/workspace.hpp"
+
+namespace fexp::solve {
+
+/// What prescribed motion took from or gave to a body in one half step.
+struct PrescribedReport {
+  Vec3d impulse;          ///< [force*time]
+  Vec3d angular_impulse;  ///< About the origin [force*length*time]
+  double work{};          ///< [force*length]
+};
+
+/// Which of the two half steps a prescribed velocity closes.
+enum class HalfStep { opening, closing };
+
+/// Sets prescribed velocities after a half step has been taken with the unconstrained acceleration. `time` is the end of
+/// that half step (mid-step or step end) and `half_dt` its length. The work booked is that of the constraint force over
+/// the step's displacement, so that it stands in the same balance as the other trapezoidal works.
+PrescribedReport prescribe_velocities(const model::Model& model, model::State& state, Index body, HalfStep half,
+                                      double time, double half_dt);
+
+/// Removes held components (fixed, symmetry) from accelerations and velocities and adds the reactions to the body's
+/// actions. To be called when new accelerations are known, before the closing half step.
+void hold_constraints(const model::Model& model, model::State& state, Index body, BodyActions& actions);
+
+}  // namespace fexp::solve

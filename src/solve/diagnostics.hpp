@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.hpp"
+#include "model/state.hpp"
+
+namespace fexp::solve {
+
+/// Energies of the model or of one body [force*length]. Kinetic energy, element energies and contact potentials are
+/// computed independently of each other, so that their balance checks the solver.
+struct Energies {
+  double kinetic{};
+  double internal{};  ///< Sum of the elements' stress work
+  double contact{};   ///< Potential of contact pairs
+  double barrier{};   ///< Potential of rigid planes
+  double external{};  ///< Work put in by loads, gravity and prescribed motion
+  double damping{};   ///< Work taken out by damping
+
+  /// What the body has now, less what was put in: constant in exact arithmetic and time.
+  [[nodiscard]] double balance() const noexcept {
+    return kinetic + internal + contact + barrier + damping - external;
+  }
+  Energies& operator+=(const Energies& other) noexcept;
+};
+
+struct Momenta {
+  Vec3d linear;                   ///< Sum of m v [force*time]
+  Vec3d angular;                  ///< Sum of x cross m v + I omega about the origin [force*length*time]
+  double linear_scale{};          ///< Sum of |m v|
+  double angular_scale{};         ///< Sum of |x cross m v| + |I omega|
+  Vec3d external_impulse;         ///< Put in from outside since the start
+  Vec3d external_angular_impulse;
+
+  Momenta& operator+=(const Momenta& other) noexcept;
+};
+
+struct Diagnostics {
+  Energies energies;
+  Momenta momenta;
+};
+
+/// Diagnostics of one body, summed in fixed pieces so that no number of threads changes a bit.
+[[nodiscard]] Diagnostics body_diagnostics(const model::Model& model, const model::State& state, Index body);
+
+/// Sum over all bodies in ascending order.
+[[nodiscard]] Diagnostics diagnostics(const model::Model& model, const model::State& state);
+
+/// Smallest critical step of a range of elements and the lowest element that has it.
+struct CriticalStep {
+  double step{HUGE_VAL};    ///< [time]; zero or NaN-free: a collapsed element reports 0
+  Index element{no_index};
+};
+
+/// Critical step over all elements in the current geometry.
+[[nodiscard]] CriticalStep critical_step(const model::Model& model, const model::State& state);
+
+}  // namespace fexp::solve

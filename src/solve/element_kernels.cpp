@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/element_kernels.hpp"
+
+#include "solve/kernels/element_kernel.hpp"
+
+namespace fexp::solve {
+
+namespace {
+
+#if defined(__x86_64__)
+bool has_avx2() noexcept { return __builtin_cpu_supports("avx2") != 0; }
+bool has_avx512() noexcept {
+  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+         __builtin_cpu_supports("avx512vl") != 0;
+}
+#endif
+
+}  // namespace
+
+SelectedKernel select_element_kernel(KernelChoice choice) noexcept {
+  const SelectedKernel scalar{kernels::update_blocks_scalar, "scalar"};
+  const SelectedKernel baseline{kernels::update_blocks_baseline, "baseline"};
+#if defined(__x86_64__)
+  const SelectedKernel avx2{has_avx2() ? kernels::update_blocks_avx2 : nullptr, "avx2"};
+  const SelectedKernel avx512{has_avx512() ? kernels::update_blocks_avx512 : nullptr, "avx512"};
+#else
+  const SelectedKernel avx2{nullptr, "avx2"};
+  const SelectedKernel avx512{nullptr, "avx512"};
+#endif
+  switch (choice) {
+    case KernelChoice::scalar:
+      return scalar;
+    case KernelChoice::baseline:
+      return baseline;
+    case KernelChoice::avx2:
+      return avx2;
+    case KernelChoice::avx512:
+      return avx512;
+    case KernelChoice::automatic:
+      break;
+  }
+  if (avx512.function != nullptr) {
+    return avx512;
+  }
+  return avx2.function != nullptr ? avx2 : baseline;
+}
+
+}  // namespace fexp::solve

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contact/island_contact.hpp"
+#include "model/model.hpp"
+#include "model/state.hpp"
+#include "solve/constraints.hpp"
+#include "solve/workspace.hpp"
+
+namespace fexp::solve {
+
+/// One epoch's work for an island.
+struct EpochPlan {
+  double dt{};                 ///< [time]
+  Index steps{};
+  std::int64_t hash_every{};   ///< Record body hashes after every so many steps of the run; 0: never.
+  /// How far a body's nodes may move before it leaves its swept box [length], shape [bodies of the model].
+  std::span<const double> allowance;
+};
+
+struct HashRecord {
+  std::int64_t step{};
+  Index body{};
+  std::uint64_t hash{};
+};
+
+/// Why an island stopped before its plan was done.
+enum class StopReason { none, left_swept_box, not_finite };
+
+struct IslandReport {
+  Index steps_done{};
+  StopReason stop{StopReason::none};
+  Index stop_body{no_index};
+  Index stop_node{no_index};          ///< For not_finite: the lowest node concerned.
+  double contact_frequency2{};        ///< Largest bound of omega^2 from contact and planes seen [1/time^2]
+  Index active_pairs{};               ///< At the last step
+  Index most_active_pairs{};
+  Index candidates{};
+  Index searches{};
+  double deepest{};                   ///< Deepest penetration over contact distance seen [-]
+  Index deepest_node{no_index};
+  Index deepest_element{no_index};
+};
+
+/// Steps one island: bodies that may touch during an epoch, with the barriers near them. Islands share no mutable data,
+/// so they can be stepped side by side. Allocates nothing inside a step except in a contact search.
+class IslandSolver {
+ public:
+  /// Takes up an island. `bodies` and `barriers` are ascending.
+  void assign(const model::Model& model, const model::State& state, std::span<const Index> bodies,
+              std::span<const Index> barriers);
+
+  /// Forces, accelerations and external actions of the present state, without moving it: at the start of a run and
+  /// after the state was put back or came from elsewhere. `time` is that of the state.
+  void evaluate(const model::Model& model, model::State& state, Workspace& workspace);
+
+  /// Takes plan.steps half-step central-difference steps [BLM00, box 6.1], or stops early for a reason.
+  IslandReport advance(const model::Model& model, model::State& state, Workspace& workspace, const EpochPlan& plan,
+                       std::vector<HashRecord>& hashes);
+
+  /// Writes what only the island knows (contact sides) back to the state.
+  void store(const model::Model& model, model::State& state) const { contact_.store_sides(model, state); }
+
+  [[nodiscard]] std::span<const Index> bodies() const noexcept { return bodies_; }
+  [[nodiscard]] std::span<const Index> barriers() const noexcept { return barriers_; }
+  [[nodiscard]] Index element_count() const noexcept { return elements_; }
+
+ private:
+  /// Consecutive nodes of one body: the unit of parallel work and of ordered sums.
+  struct Chunk {
+    Index body{};
+    Index begin{};
+    Index end{};
+  };
+  /// What one chunk contributes to its body in a pass; summed in chunk order.
+  struct Partial {
+    double largest_speed2{};
+    bool finite{true};
+    double external_work{};
+    double damping_work{};
+    double barrier_energy{};
+    double barrier_frequency2{};
+    Vec3d force;
+    Vec3d moment;
+    Vec3d impulse;
+    Vec3d angular_impulse;
+  };
+
+  struct Step;  // operands of one step, defined with the passes
+
+  void opening_half(const Step& step);
+  void contact_forces(const Step& step);
+  void element_forces(const Step& step);
+  void accelerate(const Step& step);
+  void closing_half(const Step& step);
+  void kick(const Step& step, const Chunk& chunk, Partial& partial) const;
+  void accelerate_chunk(const Step& step, std::size_t chunk_index);
+  void prescribe(const Step& step, HalfStep half);
+  IslandReport check_motion(const Step& step, const EpochPlan& plan);
+  void record_hashes(const Step& step, std::int64_t number, std::vector<HashRecord>& hashes) const;
+
+  contact::IslandContact contact_;
+  std::vector<Index> bodies_;
+  std::vector<Index> barriers_;
+  std::vector<Chunk> chunks_;
+  std::vector<Partial> partials_;       // [chunks]
+  std::vector<Vec3d> plane_partials_;   // [chunks][planes]
+  std::vector<double> travelled_;       // [bodies of the island]: bound of the distance since the epoch's start
+  contact::ContactReport contact_report_;
+  double barrier_frequency2_{};
+  Index elements_{};
+  bool contact_written_{};
+};
+
+}  // namespace fexp::solve

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/kernels/element_kernel.hpp"
+
+namespace fexp::solve::kernels {
+
+void update_blocks_scalar(const ElementKernelArguments& k, Index begin, Index end) noexcept {
+  update_blocks<double>(k, begin, end);
+}
+
+}  // namespace fexp::solve::kernels

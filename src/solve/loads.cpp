@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/loads.hpp"
+
+#include "base/vec3.hpp"
+
+namespace fexp::solve {
+
+void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, double time, Index body_index,
+                    NodalAction* load) {
+  const model::Body& body = model.bodies[at(body_index)];
+  Vec3d gravity;
+  for (const model::GravityLoad& g : model.gravity) {
+    gravity += curve_value(model, g.curve, time) * g.acceleration;
+  }
+  for (Index node = body.nodes.begin; node < body.nodes.end; ++node) {
+    load[node] = {model.mass[at(node)] * gravity, {}};
+  }
+  for (Index i = body.forces.begin; i < body.forces.end; ++i) {
+    const model::NodeLoad& nodal = model.forces[at(i)];
+    const double factor = curve_value(model, nodal.curve, time);
+    load[nodal.node].force += factor * nodal.force;
+    load[nodal.node].moment += factor * nodal.moment;
+  }
+  for (Index i = body.pressure.begin; i < body.pressure.end; ++i) {
+    const model::PressureLoad& pressure = model.pressure[at(i)];
+    const auto& nodes = model.triangle[at(pressure.element)];
+    const Vec3d a = motion[nodes[1]].position - motion[nodes[0]].position;
+    const Vec3d b = motion[nodes[2]].position - motion[nodes[0]].position;
+    // cross(a, b) is twice the area along the normal; a third of the face's force goes to each corner.
+    const double scale = -curve_value(model, pressure.curve, time) * pressure.value / 6.0;
+    const Vec3d third = scale * cross(a, b);
+    for (const Index node : nodes) {
+      load[node].force += third;
+    }
+  }
+}
+
+PlaneReaction plane_reaction(const model::Model& model, const model::RigidPlane& plane, Index node,
+                             const Vec3d& position) noexcept {
+  const double gap = model.half_thickness[at(node)] - dot(position - plane.point, plane.normal);
+  if (!(gap > 0.0)) {
+    return {};
+  }
+  const double stiffness = plane.stiffness >= 0.0 ? plane.stiffness : model.contact_stiffness[at(node)];
+  return {(stiffness * gap) * plane.normal, 0.5 * stiffness * gap * gap, stiffness};
+}
+
+}  // namespace fexp::solve

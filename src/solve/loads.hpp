@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.hpp"
+#include "model/state.hpp"
+#include "solve/workspace.hpp"
+
+namespace fexp::solve {
+
+/// Gravity, follower pressure and nodal forces on one body at `time` and the positions in `motion`; overwrites the
+/// body's part of `load`, shape [nodes].
+void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, double time, Index body,
+                    NodalAction* load);
+
+/// Force of a rigid plane on a node, and its potential.
+struct PlaneReaction {
+  Vec3d force;      ///< [force]
+  double energy{};  ///< 1/2 k g^2 [force*length]
+  double stiffness{};  ///< k while the node touches, else 0 [force/length]
+};
+
+/// Penalty reaction of plane `plane` on `node`: g = half thickness - distance, k g along the normal while g > 0.
+[[nodiscard]] PlaneReaction plane_reaction(const model::Model& model, const model::RigidPlane& plane, Index node,
+                                           const Vec3d& position) noexcept;
+
+}  // namespace fexp::solve

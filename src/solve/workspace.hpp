@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "base/aligned_vector.hpp"
+#include "contact/island_contact.hpp"
+#include "model/model.hpp"
+#include "physics/c0_triangle.hpp"
+#include "solve/element_kernels.hpp"
+
+namespace fexp::solve {
+
+/// Force and moment on a node.
+struct NodalAction {
+  Vec3d force;   ///< [force]
+  Vec3d moment;  ///< [force*length]
+};
+
+/// Sums of external actions over one body at one instant.
+struct BodyActions {
+  Vec3d force;                    ///< [force]
+  Vec3d moment;                   ///< About the origin [force*length]
+  std::vector<Vec3d> plane_force; ///< Force of each rigid plane on the body [force], shape [planes]
+};
+
+/// Arrays that every step overwrites; one for the whole model, each island writes only its own bodies' parts.
+struct Workspace {
+  explicit Workspace(const model::Model& model, SelectedKernel selected_kernel);
+
+  SelectedKernel kernel;
+  std::vector<physics::ShellSection> sections;  // [sections]
+  AlignedVector<CornerForce> corner_force;      // [elements][3]
+  std::vector<Vec3d> contact_force;             // [nodes], at the last evaluated positions [force]
+  /// Loads and gravity at the last evaluated instant, shape [nodes]; empty when the model has none.
+  std::vector<NodalAction> load;
+  std::vector<BodyActions> actions;             // [bodies]
+  std::vector<contact::BodyContact> body_contact;  // [bodies]
+  bool external{};  ///< Anything at all acts on the model from outside (loads, planes, damping, conditions).
+};
+
+}  // namespace fexp::solve

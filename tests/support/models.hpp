@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "model/state.hpp"
+#include "solve/island_solver.hpp"
+#include "support/descriptions.hpp"
+
+/// Small models for tests, ready to step.
+namespace fexp::test {
+
+/// One island of all bodies, stepped directly: the step is the test's, and no guard interferes.
+class DirectRun {
+ public:
+  explicit DirectRun(const model::Model& model, solve::KernelChoice kernel = solve::KernelChoice::automatic)
+      : model_(model),
+        state(model::initial_state(model)),
+        workspace(model, solve::select_element_kernel(kernel)),
+        allowance_(model.bodies.size(), HUGE_VAL) {
+    std::vector<Index> bodies;
+    std::vector<Index> barriers;
+    for (Index b = 0; b < model.body_count(); ++b) {
+      (model.bodies[at(b)].barrier ? barriers : bodies).push_back(b);
+    }
+    island_.assign(model, state, bodies, barriers);
+    island_.evaluate(model, state, workspace);
+  }
+
+  solve::IslandReport advance(double dt, Index steps) {
+    std::vector<solve::HashRecord> hashes;
+    const solve::EpochPlan plan{dt, steps, 0, allowance_};
+    const solve::IslandReport report = island_.advance(model_, state, workspace, plan, hashes);
+    state.step += report.steps_done;
+    state.time += static_cast<double>(report.steps_done) * dt;
+    return report;
+  }
+
+ private:
+  const model::Model& model_;
+
+ public:
+  model::State state;
+  solve::Workspace workspace;
+
+ private:
+  std::vector<double> allowance_;
+  solve::IslandSolver island_;
+};
+
+}  // namespace fexp::test

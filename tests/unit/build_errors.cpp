@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "model/build_checks.hpp"
+#include "support/descriptions.hpp"
+
+namespace fexp::model {
+namespace {
+
+using test::add_body;
+
+const physics::LinearElastic steel{7850.0, 2.1e11, 0.3};
+
+Description good() {
+  Description d = test::description(steel, 0.01);
+  add_body(d, "plate", Plate{2.0, 2.0, 2, 2, "one"});
+  add_body(d, "ball", CubedSphere{1.0, 2}).translate = {0.0, 50.0, 0.0};
+  d.curves.push_back({"ramp", {{0.0, 0.0}, {1.0, 1.0}}, {}});
+  test::add_box_set(d, "edge", {0.0, 0.0, 0.0}, {0.0, 2.0, 0.0});
+  d.node_sets.back().bodies = {"plate"};
+  return d;
+}
+
+std::vector<InputError> errors_of(const Description& d, const std::function<void(std::vector<Mesh>&)>& change = {}) {
+  std::vector<Mesh> meshes;
+  for (const BodyDescription& body : d.bodies) {
+    meshes.push_back(generate_mesh(std::get<MeshGenerator>(body.mesh)));
+  }
+  if (change) {
+    change(meshes);
+  }
+  ErrorList errors;
+  static_cast<void>(build_model(d, meshes, errors));
+  for (const InputError& error : errors.errors()) {
+    EXPECT_FALSE(error.cure.empty()) << error.text();
+    EXPECT_FALSE(error.accepted.empty()) << error.text();
+  }
+  return errors.errors();
+}
+
+/// One error, at line 7 of the deck, whose text holds all the pieces.
+void expect_one(const std::vector<InputError>& errors, const std::vector<std::string>& pieces) {
+  ASSERT_EQ(errors.size(), 1U) << (errors.empty() ? "none" : errors[1].text());
+  EXPECT_EQ(errors[0].place.line, 7);
+  for (const std::string& piece : pieces) {
+    EXPECT_NE(errors[0].text().find(piece), std::string::npos) << errors[0].text() << " lacks " << piece;
+  }
+}
+
+const Place line_7{"deck.toml", 7, 1};
+
+TEST(build_errors, a_good_description_has_none) { EXPECT_TRUE(errors_of(good()).empty()); }
+
+TEST(build_errors, no_body_is_an_error) {
+  Description d = good();
+  d.bodies.clear();
+  ErrorList errors;
+  static_cast<void>(build_model(d, {}, errors));
+  EXPECT_FALSE(errors.empty());
+}
+
+TEST(build_errors, a_part_without_section_is_named_with_the_known_sections) {
+  Description d = good();
+  d.bodies[0].section.clear();
+  d.bodies[0].place = line_7;
+  expect_one(errors_of(d), {"part \"shell\"", "body \"plate\"", "accepted: s"});
+}
+
+TEST(build_errors, a_section_that_is_not_there_is_reported_once) {
+  Description d = good();
+  d.bodies[0].section = "t";
+  d.bodies[0].place = line_7;
+  expect_one(errors_of(d), {"section \"t\"", "body \"plate\"", "accepted: s"});
+}
+
+TEST(build_errors, unknown_parts_and_sections_of_parts_are_named) {
+  Description d = good();
+  d.bodies[0].parts = {{"wing", "s", line_7}};
+  expect_one(errors_of(d), {"no part \"wing\"", "accepted: shell"});
+  d.bodies[0].parts = {{"shell", "t", line_7}};
+  expect_one(errors_of(d), {"section \"t\""});
+}
+
+TEST(build_errors, a_section_of_an_unknown_material_is_named) {
+  Description d = good();
+  d.sections.push_back({"u", "wood", 0.1, line_7});
+  expect_one(errors_of(d), {"section \"u\"", "material \"wood\"", "accepted: m"});
+}
+
+TEST(build_errors, names_given_twice_or_not_at_all_are_refused) {
+  Description d = good();
+  d.bodies[1].name = "plate";
+  d.bodies[1].place = line_7;
+  expect_one(errors_of(d), {"\"plate\"", "another body"});
+  d = good();
+  d.node_sets[0].name = "all";
+  d.node_sets[0].place = line_7;
+  expect_one(errors_of(d), {"\"all\"", "another node set"});
+  d = good();
+  d.curves[0].name.clear();
+  d.curves[0].place = line_7;
+  expect_one(errors_of(d), {"curve has no name"});
+}
+
+TEST(build_errors, copies_on_top_of_each_other_and_bad_counts_are_refused) {
+  Description d = good();
+  d.bodies[0].place = line_7;
+  d.bodies[0].array = Array{{1, 3, 1}, {1.0, 0.0, 0.0}};
+  expect_one(errors_of(d), {"3 copies in y"});
+  d.bodies[0].array = Array{{1, 1, 0}, {1.0, 1.0, 1.0}};
+  expect_one(errors_of(d), {"count in z is 0", "1 to 10000000"});
+}
+
+TEST(build_errors, more_elements_than_indices_are_refused_before_memory_is_asked_for) {
+  Description d = good();
+  d.bodies[0].place = line_7;
+  d.bodies[0].array = Array{{10000000, 10000000, 10000000}, {1.0, 1.0, 1.0}};
+  expect_one(errors_of(d), {"8000000000000000", "715827882"});
+  d.bodies[0].array = Array{{10000000, 9, 1}, {3.0, 3.0, 3.0}};  // 720 million, just too many
+  expect_one(errors_of(d), {"720000048 elements"});
+}
+
+TEST(build_errors, vectors_without_direction_are_refused) {
+  Description d = good();
+  d.bodies[0].place = line_7;
+  d.bodies[0].rotate = {{{0.0, 0.0, 0.0}, 30.0, {}}};
+  expect_one(errors_of(d), {"axis without direction"});
+  d = good();
+  d.symmetry = {{"edge", {}, line_7}};
+  expect_one(errors_of(d), {"symmetry plane has no direction"});
+  d = good();
+  d.planes = {{"floor", {}, {0.0, std::numeric_limits<double>::quiet_NaN(), 0.0}, -1.0, line_7}};
+  expect_one(errors_of(d), {"plane \"floor\" has no direction"});
+}
+
+TEST(build_errors, curves_without_points_with_falling_times_or_no_numbers_are_refused) {
+  for (const std::vector<std::array<double, 2>>& points : std::vector<std::vector<std::array<double, 2>>>{
+           {}, {{1.0, 0.0}, {0.5, 0.0}}, {{0.0, std::numeric_limits<double>::infinity()}}}) {
+    Description d = good();
+    d.curves[0] = {"ramp", points, line_7};
+    expect_one(errors_of(d), {"curve \"ramp\" is no function of time"});
+  }
+}
+
+TEST(build_errors, unknown_degrees_of_freedom_are_refused) {
+  Description d = good();
+  d.fixed = {{"edge", {"x", "w"}, line_7}};
+  expect_one(errors_of(d), {"\"w\"", "x, y, z, rx, ry, rz"});
+  d = good();
+  d.prescribed = {{"edge", "", 1.0, "", line_7}};
+  expect_one(errors_of(d), {"no degree of freedom"});
+}
+
+TEST(build_errors, unknown_sets_curves_bodies_and_groups_are_named_with_the_known_ones) {
+  Description d = good();
+  d.fixed = {{"egde", {"x"}, line_7}};
+  expect_one(errors_of(d), {"node set \"egde\"", "all, edge"});
+  d = good();
+  d.gravity = {{{0.0, 0.0, -9.81}, "rmap", line_7}};
+  expect_one(errors_of(d), {"curve \"rmap\"", "accepted: ramp"});
+  d = good();
+  d.node_sets[0].bodies = {"plate", "bell"};
+  d.node_sets[0].place = line_7;
+  expect_one(errors_of(d), {"node set \"edge\"", "body \"bell\"", "plate, ball"});
+  d = good();
+  d.pressure = {{{"bell"}, "", 1.0, "", line_7}};
+  expect_one(errors_of(d), {"body \"bell\"", "plate, ball"});
+  d = good();
+  d.contact.exclude = {{"plate", "bell"}};
+  d.contact.place = line_7;
+  expect_one(errors_of(d), {"contact.exclude", "body \"bell\"", "plate, ball"});
+  d = good();
+  d.node_sets[0].group = "rimm";
+  d.node_sets[0].place = line_7;
+  expect_one(errors_of(d,
+                       [](std::vector<Mesh>& meshes) {
+                         meshes[0].node_groups = {{"rim", {0}}, {"hub", {1}}};
+                       }),
+             {"group \"rimm\"", "accepted: hub, rim"});
+}
+
+TEST(build_errors, an_empty_set_shows_its_selection_and_where_the_bodies_are) {
+  Description d = good();
+  d.node_sets[0].box = BoxSelection{{5.0, 5.0, 5.0}, {6.0, 6.0, 6.0}};
+  d.node_sets[0].place = line_7;
+  expect_one(errors_of(d), {"\"edge\"", "[5, 5, 5] to [6, 6, 6]", "\"plate\" fills [0, 0, 0] to [2, 2, 0]"});
+}
+
+TEST(build_errors, a_pressure_on_no_face_names_the_parts) {
+  Description d = good();
+  d.pressure = {{{"plate"}, "wing", 1.0, "", line_7}};
+  expect_one(errors_of(d), {"no part \"wing\"", "accepted: shell"});
+  d.pressure = {{{}, "", 1.0, "", line_7}};
+  expect_one(errors_of(d), {"names no body", "plate, ball"});
+}
+
+TEST(build_errors, a_degree_of_freedom_held_twice_names_both_conditions) {
+  Description d = good();
+  d.fixed = {{"edge", {"x", "y"}, {}}};
+  d.prescribed = {{"all", "z", 1.0, "", {}}, {"all", "y", 1.0, "", line_7}};
+  expect_one(errors_of(d), {"set \"all\" prescribes y", "fixed by set \"edge\""});
+  d.fixed.clear();
+  d.prescribed = {{"edge", "z", 1.0, "", {}}, {"all", "z", 1.0, "", line_7}};
+  expect_one(errors_of(d), {"set \"all\" prescribes z of node 0", "\"plate\"", "prescribed by set \"edge\""});
+}
+
+TEST(build_errors, conditions_against_a_plane_of_symmetry_are_refused) {
+  const auto with = [](const Vec3d& normal, const std::string& prescribed, const std::vector<std::string>& fixed) {
+    Description d = good();
+    d.symmetry = {{"edge", normal, line_7}};
+    if (!prescribed.empty()) {
+      d.prescribed = {{"edge", prescribed, 1.0, "", {}}};
+    }
+    if (!fixed.empty()) {
+      d.fixed = {{"edge", fixed, {}}};
+    }
+    return errors_of(d);
+  };
+  EXPECT_TRUE(with({1.0, 0.0, 0.0}, "y", {"x", "rx"}).empty());
+  EXPECT_TRUE(with({1.0, 0.0, 0.0}, "rx", {"z"}).empty());
+  EXPECT_TRUE(with({1.0, 1.0, 0.0}, "z", {"rx", "ry", "rz"}).empty());
+  expect_one(with({1.0, 0.0, 0.0}, "x", {}), {"\"edge\"", "prescribed against the plane of symmetry"});
+  expect_one(with({1.0, 0.0, 0.0}, "rz", {}), {"prescribed against the plane of symmetry"});
+  expect_one(with({1.0, 1.0, 0.0}, "", {"x"}), {"fixed against the plane of symmetry"});
+}
+
+TEST(build_errors, masses_that_are_no_positive_numbers_name_a_node_of_each_body) {
+  Description d = good();
+  d.bodies[0].scale = 1e-170;
+  d.bodies[0].place = line_7;
+  d.bodies[0].array = Array{{3, 1, 1}, {1.0, 1.0, 1.0}};
+  d.node_sets.clear();
+  expect_one(errors_of(d), {"node 0 of body \"plate[0,0,0]\"", "units"});
+}
+
+TEST(build_errors, a_node_of_no_triangle_is_named_by_its_label) {
+  Description d = good();
+  d.bodies[0].place = line_7;
+  expect_one(errors_of(d,
+                       [](std::vector<Mesh>& meshes) {
+                         meshes[0].position.push_back({9.0, 9.0, 9.0});
+                         for (std::size_t n = 0; n < meshes[0].position.size(); ++n) {
+                           meshes[0].node_label.push_back(static_cast<std::int64_t>(100 + n));
+                         }
+                       }),
+             {"node 109", "belongs to no triangle"});
+}
+
+TEST(build_errors, independent_errors_are_reported_together) {
+  Description d = good();
+  d.bodies[0].section.clear();
+  d.sections.push_back({"u", "wood", 0.1, {}});
+  d.fixed = {{"edge", {"w"}, {}}};
+  const auto errors = errors_of(d, [](std::vector<Mesh>& meshes) { meshes[1].triangle.clear(); });
+  EXPECT_EQ(errors.size(), 4U);
+}
+
+}  // namespace
+}  // namespace fexp::model

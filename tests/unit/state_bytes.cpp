@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/state.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "support/descriptions.hpp"
+
+namespace fexp::model {
+namespace {
+
+const physics::LinearElastic steel{7850.0, 2.1e11, 0.3};
+
+/// Two plates of 18 triangles each: blocks of 8, 8 and 2 elements.
+Model two_plates() {
+  Description d = test::description(steel, 0.01);
+  test::add_body(d, "p", Plate{1.0, 1.0, 3, 3, "one"}).array = Array{{2, 1, 1}, {3.0, 0.0, 0.0}};
+  return test::build(d);
+}
+
+/// Records of doubles alone as the doubles they are.
+template <class Record>
+double* numbers(std::vector<Record>& records) {
+  return reinterpret_cast<double*>(records.data());
+}
+
+/// A state of the model with every value and every padding lane at random, and some sides.
+State random_state(const Model& model, unsigned seed) {
+  State state = initial_state(model);
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  const auto fill = [&](double* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      values[i] = number(random);
+    }
+  };
+  fill(numbers(state.motion), 9 * state.motion.size());
+  fill(numbers(state.acceleration), 6 * state.acceleration.size());
+  fill(state.history.data(), state.history.size());
+  fill(numbers(state.ledger), 10 * state.ledger.size());
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    for (Index i = 0; i < 4; ++i) {
+      state.sides[b].push_back({model.bodies[b].nodes.begin + i, 3 * i, static_cast<std::int8_t>(i % 2 == 0 ? 1 : -1)});
+    }
+  }
+  return state;
+}
+
+std::vector<std::byte> bytes_of(const Model& model, const State& state, Index body) {
+  std::vector<std::byte> bytes;
+  append_body_bytes(model, state, body, bytes);
+  return bytes;
+}
+
+TEST(state_bytes, initial_state_is_at_rest_where_fixed_and_moves_as_told_elsewhere) {
+  Description d = test::description(steel, 0.01);
+  BodyDescription& body = test::add_body(d, "p", Plate{1.0, 1.0, 3, 3, "one"});
+  body.velocity = {1.0, 2.0, 3.0};
+  body.angular_velocity = {4.0, 5.0, 6.0};
+  test::add_box_set(d, "edge", {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
+  test::fix(d, "edge", {"y", "rz"});
+  const Model m = test::build(d);
+  const State s = initial_state(m);
+  EXPECT_EQ(s.step, 0);
+  EXPECT_EQ(s.time, 0.0);
+  ASSERT_EQ(s.history.size(), static_cast<std::size_t>(3 * element_rows * block_lanes));
+  EXPECT_EQ(s.sides.size(), 1U);
+  EXPECT_EQ(s.ledger.size(), 1U);
+  for (const double value : s.history) {
+    EXPECT_EQ(value, 0.0);
+  }
+  for (Index n = 0; n < m.node_count(); ++n) {
+    const bool fixed = m.reference_position[at(n)].x == 0.0;
+    Vec3d velocity = m.initial_velocity[at(n)], rate = body.angular_velocity;
+    if (fixed) {
+      velocity.y = 0.0;
+      rate.z = 0.0;
+    }
+    EXPECT_EQ(s.motion[at(n)].position, m.reference_position[at(n)]);
+    EXPECT_EQ(s.motion[at(n)].velocity, velocity);
+    EXPECT_EQ(s.motion[at(n)].rotation_rate, rate);
+    EXPECT_EQ(s.acceleration[at(n)].linear, Vec3d{});
+    EXPECT_EQ(s.acceleration[at(n)].angular, Vec3d{});
+  }
+}
+
+TEST(state_bytes, what_is_written_is_read_back_bit_for_bit_and_only_into_its_body) {
+  const Model m = two_plates();
+  State from = random_state(m, 1);
+  const std::size_t node = at(m.bodies[1].nodes.begin);
+  from.motion[node].velocity.x = -0.0;
+  from.acceleration[node].linear.y = std::numeric_limits<double>::quiet_NaN();
+  State to = random_state(m, 2);
+  const auto other_before = bytes_of(m, to, 0);
+  const auto bytes = bytes_of(m, from, 1);
+  ASSERT_TRUE(read_body_bytes(m, bytes, 1, to));
+  EXPECT_EQ(bytes_of(m, to, 1), bytes);
+  EXPECT_EQ(bytes_of(m, to, 0), other_before);
+  EXPECT_TRUE(std::signbit(to.motion[node].velocity.x));
+  EXPECT_TRUE(std::isnan(to.acceleration[node].linear.y));
+  EXPECT_EQ(to.sides[1], from.sides[1]);
+  EXPECT_EQ(body_hash(m, to, 1), body_hash(m, from, 1));
+}
+
+TEST(state_bytes, the_layout_is_the_documented_one) {
+  const Model m = two_plates();
+  const State s = random_state(m, 3);
+  const auto bytes = bytes_of(m, s, 1);
+  const auto number_at = [&](std::size_t offset) {
+    double value;
+    std::memcpy(&value, bytes.data() + offset, sizeof(value));
+    return value;
+  };
+  const Body& body = m.bodies[1];
+  ASSERT_EQ(bytes.size(), 16U * 15U * 8U + 18U * 12U * 8U + 8U + 4U * 9U + 80U);
+  EXPECT_EQ(number_at(0), s.motion[at(body.nodes.begin)].position.x);
+  EXPECT_EQ(number_at(72), s.motion[at(body.nodes.begin + 1)].position.x);
+  EXPECT_EQ(number_at(16 * 72), s.acceleration[at(body.nodes.begin)].linear.x);
+  const std::size_t rows = 16U * 15U * 8U;
+  EXPECT_EQ(number_at(rows + 8), element_value(m, s, body.elements.begin + 1, row_nxx));
+  EXPECT_EQ(number_at(rows + 64), element_value(m, s, body.elements.begin, row_nyy));
+  // The last block has two lanes.
+  EXPECT_EQ(number_at(rows + 16 * 12 * 8 + 16), element_value(m, s, body.elements.begin + 16, row_nyy));
+  const std::size_t sides = rows + 18U * 12U * 8U;
+  EXPECT_EQ(std::to_integer<int>(bytes[sides]), 4);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 8]), body.nodes.begin);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 8 + 9 + 4]), 3);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 8 + 9 + 8]), 0xFF);
+  EXPECT_EQ(number_at(bytes.size() - 80), s.ledger[1].external_work);
+}
+
+TEST(state_bytes, padding_lanes_do_not_reach_the_hash) {
+  const Model m = two_plates();
+  State s = random_state(m, 4);
+  const std::uint64_t before = state_hash(m, s);
+  for (Index b = 0; b < m.block_count(); ++b) {
+    for (Index row = 0; row < element_rows; ++row) {
+      for (Index lane = m.blocks[at(b)].count; lane < block_lanes; ++lane) {
+        s.history[(at(b) * element_rows + at(row)) * at(block_lanes) + at(lane)] += 1.0;
+      }
+    }
+  }
+  EXPECT_EQ(state_hash(m, s), before);
+}
+
+TEST(state_bytes, every_used_number_reaches_the_hash) {
+  const Model m = two_plates();
+  const State s = random_state(m, 5);
+  const std::uint64_t before = state_hash(m, s);
+  const auto changed = [&](auto change) {
+    State other = s;
+    change(other);
+    return state_hash(m, other) != before;
+  };
+  const auto flip = [](double& value) { value = -value; };
+  for (std::size_t i = 0; i < 9 * s.motion.size(); ++i) {
+    EXPECT_TRUE(changed([&](State& o) { flip(numbers(o.motion)[i]); }));
+  }
+  for (std::size_t i = 0; i < 6 * s.acceleration.size(); ++i) {
+    EXPECT_TRUE(changed([&](State& o) { flip(numbers(o.acceleration)[i]); }));
+  }
+  for (std::size_t i = 0; i < 10 * s.ledger.size(); ++i) {
+    EXPECT_TRUE(changed([&](State& o) { flip(numbers(o.ledger)[i]); }));
+  }
+  for (Index e = 0; e < m.element_count(); ++e) {
+    for (Index row = 0; row < element_rows; ++row) {
+      const Index block = m.element_block[at(e)], lane = e - m.blocks[at(block)].first;
+      EXPECT_TRUE(changed(
+          [&](State& o) { flip(o.history[(at(block) * element_rows + at(row)) * at(block_lanes) + at(lane)]); }));
+    }
+  }
+  EXPECT_TRUE(changed([](State& o) { ++o.step; }));
+  EXPECT_TRUE(changed([](State& o) { o.time = 1.0; }));
+  EXPECT_TRUE(changed([](State& o) { o.sides[1][2].side = -1; }));
+  EXPECT_TRUE(changed([](State& o) { o.sides[0].pop_back(); }));
+  EXPECT_TRUE(changed([](State& o) { std::swap(o.ledger[0], o.ledger[1]); }));
+}
+
+TEST(state_bytes, bytes_that_do_not_fit_are_refused_and_change_nothing) {
+  const Model m = two_plates();
+  const auto good = bytes_of(m, random_state(m, 6), 1);
+  State s = random_state(m, 7);
+  const std::uint64_t before = state_hash(m, s);
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    EXPECT_FALSE(read_body_bytes(m, std::span(good).first(size), 1, s)) << size;
+  }
+  auto bytes = good;
+  bytes.push_back(std::byte{0});
+  EXPECT_FALSE(read_body_bytes(m, bytes, 1, s));
+  const std::size_t sides = 16U * 15U * 8U + 18U * 12U * 8U;
+  for (const std::int64_t count :
+       {std::int64_t{3}, std::int64_t{5}, std::int64_t{-1}, std::numeric_limits<std::int64_t>::max(),
+        std::numeric_limits<std::int64_t>::min()}) {
+    bytes = good;
+    std::memcpy(bytes.data() + sides, &count, sizeof(count));
+    EXPECT_FALSE(read_body_bytes(m, bytes, 1, s)) << count;
+  }
+  EXPECT_EQ(state_hash(m, s), before);
+}
+
+TEST(state_bytes, sides_that_the_body_cannot_have_are_refused) {
+  const Model m = two_plates();
+  const State good = random_state(m, 8);
+  const Index first = m.bodies[1].nodes.begin;
+  State s = random_state(m, 9);
+  const std::uint64_t before = state_hash(m, s);
+  for (const std::vector<ContactSide>& sides :
+       std::vector<std::vector<ContactSide>>{{{first - 1, 0, 1}},                // another body's node
+                                             {{m.node_count(), 0, 1}},           // no node
+                                             {{first, -1, 1}},                   // no element
+                                             {{first, m.element_count(), 1}},    // no element
+                                             {{first, 0, 0}},                    // no side
+                                             {{first, 2, 1}, {first, 1, 1}},     // out of order
+                                             {{first, 1, 1}, {first, 1, 1}}}) {  // twice
+    State bad = good;
+    bad.sides[1] = sides;
+    EXPECT_FALSE(read_body_bytes(m, bytes_of(m, bad, 1), 1, s));
+  }
+  EXPECT_EQ(state_hash(m, s), before);
+}
+
+TEST(state_bytes, appending_keeps_what_is_there) {
+  const Model m = two_plates();
+  const State s = random_state(m, 10);
+  std::vector<std::byte> both{std::byte{7}};
+  append_body_bytes(m, s, 0, both);
+  append_body_bytes(m, s, 1, both);
+  const auto first = bytes_of(m, s, 0), second = bytes_of(m, s, 1);
+  ASSERT_EQ(both.size(), 1 + first.size() + second.size());
+  EXPECT_EQ(std::to_integer<int>(both[0]), 7);
+  EXPECT_TRUE(std::equal(first.begin(), first.end(), both.begin() + 1));
+}
+
+}  // namespace
+}  // namespace fexp::model

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/diagnostics.hpp"
 
-#include <algorithm>
-#include <vector>
+#include <functional>
 
 #include "parallel/parallel.hpp"
 #include "physics/critical_step.hpp"
@@ -12,7 +11,6 @@ namespace fexp::solve {
 namespace {
 
 constexpr Index piece = 1024;
-constexpr Index body_grain = 4;
 
 Diagnostics node_sums(const model::Model& model, const model::State& state, Index begin, Index end) {
   Diagnostics sum;
@@ -40,31 +38,29 @@ double internal_energy(const model::Model& model, const model::State& state, Ind
   return sum;
 }
 
-/// Sums `part(begin, end)` over pieces of a range: in parallel over pieces, added in ascending order.
-template <class Sum, class Part>
-Sum ordered_sum(IndexRange range, const Part& part) {
-  const Index pieces = (range.size() + piece - 1) / piece;
-  std::vector<Sum> sums(at(pieces));
-  parallel::for_each(pieces, 4, [&](Index i) {
-    const Index begin = range.begin + i * piece;
-    sums[at(i)] = part(begin, std::min(begin + piece, range.end));
-  });
-  Sum total{};
-  for (const Sum& sum : sums) {
-    total += sum;
-  }
-  return total;
+Diagnostics plus(Diagnostics a, const Diagnostics& b) noexcept {
+  a.energies += b.energies;
+  a.momenta += b.momenta;
+  return a;
 }
 
-struct DiagnosticsSum : Diagnostics {
-  DiagnosticsSum& operator+=(const DiagnosticsSum& other) noexcept {
-    energies += other.energies;
-    momenta += other.momenta;
-    return *this;
-  }
-};
-
 CriticalStep smaller(const CriticalStep& a, const CriticalStep& b) noexcept { return b.step < a.step ? b : a; }
+
+/// The smallest critical step of elements [begin, end).
+CriticalStep smallest_step(const model::Model& model, const model::State& state, Index begin, Index end) {
+  CriticalStep found;
+  for (Index e = begin; e < end; ++e) {
+    const auto& nodes = model.triangle[at(e)];
+    const Vec3d& origin = state.motion[at(nodes[0])].position;
+    const model::SectionData& section = model.section_of(e);
+    const auto frame = physics::triangle_frame(state.motion[at(nodes[1])].position - origin,
+                                               state.motion[at(nodes[2])].position - origin);
+    const double step =
+        physics::element_critical_step({section.thickness, section.moduli, model.run.drilling}, section.density, frame);
+    found = smaller(found, {step > 0.0 ? step : 0.0, e});
+  }
+  return found;
+}
 
 }  // namespace
 
@@ -91,11 +87,12 @@ Momenta& Momenta::operator+=(const Momenta& other) noexcept {
 Diagnostics body_diagnostics(const model::Model& model, const model::State& state, Index index) {
   const model::Body& body = model.bodies[at(index)];
   const model::BodyLedger& ledger = state.ledger[at(index)];
-  Diagnostics sum = ordered_sum<DiagnosticsSum>(body.nodes, [&](Index begin, Index end) {
-    return DiagnosticsSum{node_sums(model, state, begin, end)};
-  });
-  sum.energies.internal = ordered_sum<double>(
-      body.elements, [&](Index begin, Index end) { return internal_energy(model, state, begin, end); });
+  Diagnostics sum = parallel::ordered_fold(
+      body.nodes, piece, Diagnostics{}, [&](Index begin, Index end) { return node_sums(model, state, begin, end); },
+      plus);
+  sum.energies.internal = parallel::ordered_fold(
+      body.elements, piece, 0.0, [&](Index begin, Index end) { return internal_energy(model, state, begin, end); },
+      std::plus<>());
   sum.energies.contact = ledger.contact_energy;
   sum.energies.barrier = ledger.barrier_energy;
   sum.energies.external = ledger.external_work;
@@ -106,40 +103,15 @@ Diagnostics body_diagnostics(const model::Model& model, const model::State& stat
 }
 
 Diagnostics diagnostics(const model::Model& model, const model::State& state) {
-  std::vector<Diagnostics> bodies(model.bodies.size());
-  parallel::for_each(model.body_count(), body_grain,
-                     [&](Index body) { bodies[at(body)] = body_diagnostics(model, state, body); });
-  Diagnostics total;
-  for (const Diagnostics& body : bodies) {
-    total.energies += body.energies;
-    total.momenta += body.momenta;
-  }
-  return total;
+  return parallel::ordered_fold(
+      {0, model.body_count()}, 1, Diagnostics{},
+      [&](Index body, Index) { return body_diagnostics(model, state, body); }, plus);
 }
 
 CriticalStep critical_step(const model::Model& model, const model::State& state) {
-  const Index pieces = (model.element_count() + piece - 1) / piece;
-  std::vector<CriticalStep> smallest(at(pieces));
-  parallel::for_each(pieces, 1, [&](Index i) {
-    CriticalStep found;
-    const Index end = std::min((i + 1) * piece, model.element_count());
-    for (Index e = i * piece; e < end; ++e) {
-      const auto& nodes = model.triangle[at(e)];
-      const Vec3d& origin = state.motion[at(nodes[0])].position;
-      const model::SectionData& section = model.section_of(e);
-      const auto frame = physics::triangle_frame(state.motion[at(nodes[1])].position - origin,
-                                                 state.motion[at(nodes[2])].position - origin);
-      const double step = physics::element_critical_step({section.thickness, section.moduli, model.run.drilling},
-                                                         section.density, frame);
-      found = smaller(found, {step > 0.0 ? step : 0.0, e});
-    }
-    smallest[at(i)] = found;
-  });
-  CriticalStep found;
-  for (const CriticalStep& candidate : smallest) {
-    found = smaller(found, candidate);
-  }
-  return found;
+  return parallel::ordered_fold(
+      {0, model.element_count()}, piece, CriticalStep{},
+      [&](Index begin, Index end) { return smallest_step(model, state, begin, end); }, smaller);
 }
 
 }  // namespace fexp::solve

@@ -30,10 +30,9 @@ Fault Simulation::not_finite_fault(const std::vector<solve::IslandReport>& islan
   }
   fault.body = model_.node_body[at(fault.node)];
   fault.element = model_.corner[at(model_.corner_start[at(fault.node)])] / 3;
-  fault.message =
-      fmt::format("step {}: the velocity of node {} of body \"{}\" (element {}) is not a finite number",
-                  state_.step + steps + 1, model_.node_label[at(fault.node)], model_.bodies[at(fault.body)].name,
-                  model_.element_label[at(fault.element)]);
+  fault.message = fmt::format("step {}: the velocity of node {} of body \"{}\" (element {}) is not a finite number",
+                              state_.step + steps + 1, model_.node_label[at(fault.node)],
+                              model_.bodies[at(fault.body)].name, model_.element_label[at(fault.element)]);
   fault.cure = "check density, thickness, loads and penalty_scale there, or lower run.safety";
   return fault;
 }
@@ -43,10 +42,10 @@ Fault Simulation::collapsed_fault() const {
   fault.kind = FaultKind::step_collapsed;
   fault.element = critical_.element;
   fault.body = body_of_element(model_, fault.element);
-  fault.message = fmt::format(
-      "the critical step fell to {:.3g}, which is {:.2g} of the first one, at element {} of body \"{}\"", critical_.step,
-      critical_.step / model_.first_critical_step, model_.element_label[at(fault.element)],
-      model_.bodies[at(fault.body)].name);
+  fault.message =
+      fmt::format("the critical step fell to {:.3g}, which is {:.2g} of the first one, at element {} of body \"{}\"",
+                  critical_.step, critical_.step / model_.first_critical_step, model_.element_label[at(fault.element)],
+                  model_.bodies[at(fault.body)].name);
   fault.cure = "the element is crushed or torn: refine the mesh there, lower the load, or lower penalty_scale";
   return fault;
 }
@@ -72,12 +71,14 @@ Fault Simulation::energy_fault(const EpochReport& report) const {
       }
     }
     where = "most strained:";
-    fault.cure = "lower run.safety, refine the mesh there, or raise run.energy_drift_limit if the imbalance is expected";
+    fault.cure =
+        "lower run.safety, refine the mesh there, or raise run.energy_drift_limit if the imbalance is expected";
   }
   fault.body = body_of_element(model_, fault.element);
-  fault.message = fmt::format("step {}: the energy balance is off by {:.3g} (bound {:.3g}); {} element {} of body \"{}\"",
-                              state_.step, report.energy_error, model_.run.energy_drift_limit, where,
-                              model_.element_label[at(fault.element)], model_.bodies[at(fault.body)].name);
+  fault.message =
+      fmt::format("step {}: the energy balance is off by {:.3g} (bound {:.3g}); {} element {} of body \"{}\"",
+                  state_.step, report.energy_error, model_.run.energy_drift_limit, where,
+                  model_.element_label[at(fault.element)], model_.bodies[at(fault.body)].name);
   return fault;
 }
 

@@ -29,12 +29,12 @@ struct Simulation::Attempt {
   double dt{};
   Index steps{};
   bool reaches_target{};
-  Index most_steps{};              ///< Lowered when the guard trips.
-  double contact_frequency2{};     ///< Raised when the guard trips.
-  double element_frequency2{};     ///< Likewise.
-  double slack{1.0};               ///< Raised when a single step leaves its swept box.
-  std::vector<double> allowance;   // [bodies]
-  std::vector<Box> swept;          // [bodies]
+  Index most_steps{};             ///< Lowered when the guard trips.
+  double contact_frequency2{};    ///< Raised when the guard trips.
+  double element_frequency2{};    ///< Likewise.
+  double slack{1.0};              ///< Raised when a single step leaves its swept box.
+  std::vector<double> allowance;  // [bodies]
+  std::vector<Box> swept;         // [bodies]
 };
 
 Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel)
@@ -174,8 +174,8 @@ EpochReport Simulation::run_epoch(double target, std::int64_t hash_every) {
 }
 
 /// Decides from global data whether an attempt stands; otherwise lowers what has to be lowered for the next one.
-Simulation::Verdict Simulation::guard(Attempt& attempt, const std::vector<solve::IslandReport>& islands,
-                                      bool may_retry, Fault& fault) {
+Simulation::Verdict Simulation::guard(Attempt& attempt, const std::vector<solve::IslandReport>& islands, bool may_retry,
+                                      Fault& fault) {
   Index good = attempt.steps;
   bool left_box = false, broken = false;
   double contact2 = 0.0;
@@ -202,7 +202,8 @@ Simulation::Verdict Simulation::guard(Attempt& attempt, const std::vector<solve:
   const double element2 = frequency2(critical);
   const double allowed = 2.0 * (1.0 - (1.0 - margin_used) * (1.0 - model_.run.safety));
   const bool collapsed = !(critical.step > model_.run.step_collapse * model_.first_critical_step);
-  const bool stable = attempt.dt * std::sqrt(element2 + contact2) <= std::max(allowed, rounding * 2.0 * model_.run.safety);
+  const bool stable =
+      attempt.dt * std::sqrt(element2 + contact2) <= std::max(allowed, rounding * 2.0 * model_.run.safety);
   if (!stable && !collapsed && may_retry) {
     attempt.contact_frequency2 = std::max(attempt.contact_frequency2, contact2);
     attempt.element_frequency2 = std::max(attempt.element_frequency2, element2);
@@ -236,13 +237,12 @@ void Simulation::judge(EpochReport& report) {
   report.diagnostics = solve::diagnostics(model_, state_);
   const solve::Energies& e = report.diagnostics.energies;
   const solve::Momenta& m = report.diagnostics.momenta;
-  energy_scale_ = std::max({energy_scale_, std::abs(e.external),
-                            e.kinetic + std::abs(e.internal) + e.contact + e.barrier + e.damping});
+  energy_scale_ = std::max(
+      {energy_scale_, std::abs(e.external), e.kinetic + std::abs(e.internal) + e.contact + e.barrier + e.damping});
   linear_scale_ = std::max(linear_scale_, m.linear_scale);
   angular_scale_ = std::max(angular_scale_, m.angular_scale);
   report.energy_error = relative(e.balance() - start_.energies.balance(), energy_scale_);
-  report.linear_momentum_error =
-      relative(norm(m.linear - start_.momenta.linear - m.external_impulse), linear_scale_);
+  report.linear_momentum_error = relative(norm(m.linear - start_.momenta.linear - m.external_impulse), linear_scale_);
   report.angular_momentum_error =
       relative(norm(m.angular - start_.momenta.angular - m.external_angular_impulse), angular_scale_);
   if (report.fault.kind == FaultKind::none && !(report.energy_error <= model_.run.energy_drift_limit)) {

@@ -29,15 +29,15 @@ struct Fault {
 
 /// What one epoch did.
 struct EpochReport {
-  double dt{};                     ///< [time]
+  double dt{};  ///< [time]
   Index steps{};
   Index islands{};
   Index largest_island_elements{};
-  Index rollbacks{};               ///< Times the epoch was put back and redone
-  Index active_pairs{};            ///< Contacts at the end
+  Index rollbacks{};     ///< Times the epoch was put back and redone
+  Index active_pairs{};  ///< Contacts at the end
   Index candidates{};
-  Index searches{};                ///< Contact searches during the epoch
-  double deepest{};                ///< Deepest penetration over contact distance [-]
+  Index searches{};  ///< Contact searches during the epoch
+  double deepest{};  ///< Deepest penetration over contact distance [-]
   Index deepest_node{no_index};
   Index deepest_element{no_index};
   solve::CriticalStep critical;    ///< Of the elements, at the end
@@ -67,8 +67,8 @@ struct RunExtremes {
 
 /// Integrates a model epoch by epoch on one machine. At an epoch's start the swept boxes of all bodies give the
 /// interaction graph, its components are the islands, and the islands are stepped side by side. A guard checks
-/// afterwards that no body left its swept box and that the step was stable; where it trips, the epoch is put back to its
-/// start and redone shorter or with a smaller step.
+/// afterwards that no body left its swept box and that the step was stable; where it trips, the epoch is put back to
+/// its start and redone shorter or with a smaller step.
 class Simulation {
  public:
   Simulation(const model::Model& model, solve::KernelChoice kernel);
@@ -111,8 +111,8 @@ class Simulation {
   std::vector<Island> islands_;
   std::vector<std::unique_ptr<solve::IslandSolver>> solvers_;  // [islands]
   std::vector<Index> island_of_body_;
-  solve::CriticalStep critical_;     ///< Of the elements in the present state
-  double contact_frequency2_{};      ///< Contact's share of omega^2 in the last epoch [1/time^2]
+  solve::CriticalStep critical_;  ///< Of the elements in the present state
+  double contact_frequency2_{};   ///< Contact's share of omega^2 in the last epoch [1/time^2]
   solve::Diagnostics start_;
   double energy_scale_{};
   double linear_scale_{};

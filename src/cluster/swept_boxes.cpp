@@ -34,12 +34,12 @@ double prescribed_speed(const model::Model& model, const model::Body& body) {
   return std::sqrt(3.0) * largest;
 }
 
-Box node_box(const model::Model& model, const model::State& state, const model::Body& body, double& half_thickness) {
+Box node_box(const model::Model& model, const model::State& state, const model::Body& body, double& reach) {
   Box box;
-  half_thickness = 0.0;
+  reach = 0.0;
   for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
     box.include(state.motion[at(n)].position);
-    half_thickness = std::max(half_thickness, model.half_thickness[at(n)]);
+    reach = std::max(reach, model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)]));
   }
   return box;
 }
@@ -64,8 +64,8 @@ std::vector<double> travel_allowance(const model::Model& model, const model::Sta
       speed2 = std::max(speed2, dot(v, v));
     }
     const double speed = std::sqrt(speed2) + prescribed_speed(model, body);
-    double half_thickness = 0.0;
-    const double size = largest_extent(node_box(model, state, body, half_thickness));
+    double reach = 0.0;
+    const double size = largest_extent(node_box(model, state, body, reach));
     allowance[at(b)] = slack * (velocity_margin * speed * dt * static_cast<double>(steps) + free_play * size);
   });
   return allowance;
@@ -74,9 +74,9 @@ std::vector<double> travel_allowance(const model::Model& model, const model::Sta
 std::vector<Box> swept_boxes(const model::Model& model, const model::State& state, std::span<const double> allowance) {
   std::vector<Box> boxes(model.bodies.size());
   parallel::for_each(model.body_count(), body_grain, [&](Index b) {
-    double half_thickness = 0.0;
-    const Box box = node_box(model, state, model.bodies[at(b)], half_thickness);
-    boxes[at(b)] = box.grown(allowance[at(b)] + half_thickness);
+    double reach = 0.0;
+    const Box box = node_box(model, state, model.bodies[at(b)], reach);
+    boxes[at(b)] = box.grown(allowance[at(b)] + reach);
   });
   return boxes;
 }

@@ -16,7 +16,8 @@ namespace fexp::cluster {
 [[nodiscard]] std::vector<double> travel_allowance(const model::Model& model, const model::State& state, double dt,
                                                    Index steps, double slack);
 
-/// Each body's present box grown by its allowance and its half thickness [length], shape [bodies].
+/// Each body's present box grown by its allowance, its half thickness and the margin within which contact remembers
+/// sides [length], shape [bodies].
 [[nodiscard]] std::vector<Box> swept_boxes(const model::Model& model, const model::State& state,
                                            std::span<const double> allowance);
 

@@ -1,13 +1,230 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/island_contact.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include "parallel/parallel.hpp"
+
 namespace fexp::contact {
 
-void IslandContact::assign(const model::Model&, std::span<const Index>, std::span<const Index>, const model::State&) {}
-void IslandContact::advance(const model::Model&, const model::NodeMotion*, double) {}
-ContactReport IslandContact::evaluate(const model::Model&, const model::NodeMotion*, double, Vec3d*, BodyContact*) {
-  return {};
+namespace {
+
+/// The skin as a part of the mean element size: larger means fewer searches and more candidates.
+constexpr double skin_part = 0.4;
+/// A search is due when this part of the skin is used up, however it was measured.
+constexpr double worn_part = 0.5;
+constexpr Index rows_per_piece = 64;
+constexpr Index piece_grain = 4;
+constexpr Index node_grain = 4096;
+
+bool by_pair(const model::ContactSide& a, const model::ContactSide& b) noexcept {
+  return a.node != b.node ? a.node < b.node : a.element < b.element;
 }
-void IslandContact::store_sides(const model::Model&, model::State&) const {}
+
+}  // namespace
+
+Index IslandContact::owner(const model::Model& model, Index node, Index element) {
+  const Index body = model.node_body[at(node)];
+  return model.bodies[at(body)].barrier ? body_of_element(model, element) : body;
+}
+
+void IslandContact::assign(const model::Model& model, std::span<const Index> bodies, std::span<const Index> barriers,
+                           const model::State& state) {
+  bodies_.assign(bodies.begin(), bodies.end());
+  pieces_.clear();
+  candidates_ = {};
+  report_ = {};
+  searched_ = false;
+  moved_ = 0.0;
+  enabled_ = model.contact.enabled && (bodies.size() + barriers.size() > 1 || model.can_touch(bodies[0], bodies[0]));
+  if (!enabled_) {
+    return;
+  }
+  std::vector<Index> all(bodies.begin(), bodies.end());
+  all.insert(all.end(), barriers.begin(), barriers.end());
+  std::sort(all.begin(), all.end());
+  search_.assign(model, all);
+  double size = 0.0;
+  for (const Index n : search_.nodes()) {
+    size += model.node_size[at(n)];
+  }
+  skin_ = skin_part * size / static_cast<double>(search_.node_count());
+  Piece& piece = pieces_.emplace_back();
+  for (const Index body : bodies_) {
+    piece.memory.insert(piece.memory.end(), state.sides[at(body)].begin(), state.sides[at(body)].end());
+  }
+  std::sort(piece.memory.begin(), piece.memory.end(), by_pair);
+}
+
+std::vector<model::ContactSide> IslandContact::all_sides() const {
+  std::vector<model::ContactSide> sides;
+  for (const Piece& piece : pieces_) {
+    sides.insert(sides.end(), piece.memory.begin(), piece.memory.end());
+  }
+  return sides;
+}
+
+void IslandContact::store_sides(const model::Model& model, model::State& state) const {
+  for (const Index body : bodies_) {
+    state.sides[at(body)].clear();
+  }
+  for (const Piece& piece : pieces_) {
+    for (const model::ContactSide& side : piece.memory) {
+      state.sides[at(owner(model, side.node, side.element))].push_back(side);
+    }
+  }
+}
+
+/// Largest distance between the displacements of any two nodes since the last search: the diagonal of their box. It
+/// does not grow while the island flies as a whole.
+double IslandContact::relative_motion(const Positions& x) const {
+  Box box;
+  const std::span<const Index> nodes = search_.nodes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    box.include(x(nodes[i]) - searched_at_[i]);
+  }
+  return norm(box.high - box.low);
+}
+
+void IslandContact::advance(const model::Model& model, const model::NodeMotion* motion, double largest_way) {
+  if (!enabled_ || !searched_) {
+    return;
+  }
+  moved_ += 2.0 * largest_way;
+  if (moved_ <= skin_) {
+    return;
+  }
+  const Positions x{motion, 0.0};
+  moved_ = relative_motion(x);
+  if (moved_ > worn_part * skin_) {
+    search(model, x);
+  }
+}
+
+void IslandContact::search(const model::Model& model, const Positions& x) {
+  const std::vector<model::ContactSide> memory = all_sides();
+  std::vector<Index> remembered;
+  remembered.reserve(memory.size());
+  for (const model::ContactSide& side : memory) {
+    remembered.push_back(side.node);
+  }
+  search_.search(model, x, skin_, remembered, candidates_);
+  const std::span<const Index> nodes = search_.nodes();
+  searched_at_.resize(nodes.size());
+  parallel::for_each(search_.node_count(), node_grain, [&](Index i) { searched_at_[at(i)] = x(nodes[at(i)]); });
+  cut_into_pieces(memory);
+  moved_ = 0.0;
+  searched_ = true;
+  ++report_.searches;
+  report_.candidates = static_cast<Index>(candidates_.element.size());
+}
+
+void IslandContact::cut_into_pieces(const std::vector<model::ContactSide>& memory) {
+  const auto rows = static_cast<Index>(candidates_.node.size());
+  pieces_.resize(at((rows + rows_per_piece - 1) / rows_per_piece));
+  auto next = memory.begin();
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    Piece& piece = pieces_[i];
+    piece.first_row = static_cast<Index>(i) * rows_per_piece;
+    piece.last_row = std::min(piece.first_row + rows_per_piece, rows);
+    const Index last_node = candidates_.node[at(piece.last_row - 1)];
+    const auto end = std::find_if(next, memory.end(), [&](const model::ContactSide& s) { return s.node > last_node; });
+    piece.memory.assign(next, end);
+    next = end;
+  }
+}
+
+void IslandContact::look(const model::Model& model, const Positions& now, const Positions& before, Piece& piece) const {
+  NodeWatch watch(model, now, before);
+  piece.active.clear();
+  piece.next_memory.clear();
+  auto known = piece.memory.cbegin();
+  for (Index row = piece.first_row; row < piece.last_row; ++row) {
+    const Index node = candidates_.node[at(row)];
+    auto end = known;
+    while (end != piece.memory.cend() && end->node == node) {
+      ++end;
+    }
+    // Nothing remembered and nothing near enough yet: most rows on most steps.
+    if (known != end || candidates_.slack[at(row)] <= moved_) {
+      const std::span<const Index> elements(candidates_.element.data() + candidates_.start[at(row)],
+                                            candidates_.element.data() + candidates_.start[at(row) + 1]);
+      watch.look(node, elements, {known, end}, piece.next_memory, piece.active);
+    }
+    known = end;
+  }
+  piece.memory.swap(piece.next_memory);
+}
+
+ContactReport IslandContact::evaluate(const model::Model& model, const model::NodeMotion* motion, double dt,
+                                      NodeContact& nodes, BodyContact* bodies) {
+  if (!enabled_) {
+    return report_;
+  }
+  const Positions now{motion, 0.0};
+  if (!searched_) {
+    search(model, now);
+  }
+  parallel::for_each(static_cast<Index>(pieces_.size()), piece_grain, [&](Index i) {
+    look(model, now, {motion, dt}, pieces_[at(i)]);
+  });
+  report_.active_pairs = 0;
+  report_.deepest = 0.0;
+  report_.deepest_node = no_index;
+  report_.deepest_element = no_index;
+  for (const Piece& piece : pieces_) {
+    for (const ActivePair& pair : piece.active) {
+      add(model, now, pair, nodes, bodies);
+    }
+  }
+  report_.max_stiffness_over_mass = 0.0;
+  for (const Piece& piece : pieces_) {
+    for (const ActivePair& pair : piece.active) {
+      const auto& t = model.triangle[at(pair.element)];
+      for (const Index n : {pair.node, t[0], t[1], t[2]}) {
+        report_.max_stiffness_over_mass =
+            std::max(report_.max_stiffness_over_mass, 2.0 * nodes.stiffness[at(n)] / model.mass[at(n)]);
+      }
+    }
+  }
+  return report_;
+}
+
+/// Adds a pair's force to its node and the opposite to the corners, in equal and opposite parts. Pairs come in
+/// ascending order, so the sums are the same whatever thread found them.
+void IslandContact::add(const model::Model& model, const Positions& x, const ActivePair& pair, NodeContact& nodes,
+                        BodyContact* bodies) {
+  ++report_.active_pairs;
+  if (pair.depth > report_.deepest) {
+    report_.deepest = pair.depth;
+    report_.deepest_node = pair.node;
+    report_.deepest_element = pair.element;
+  }
+  const bool barrier_node = model.bodies[at(model.node_body[at(pair.node)])].barrier;
+  const bool barrier_element = model.bodies[at(body_of_element(model, pair.element))].barrier;
+  BodyContact& body = bodies[owner(model, pair.node, pair.element)];
+  body.energy += pair.energy;
+  if (!barrier_node) {
+    nodes.force[at(pair.node)] += pair.force;
+    nodes.stiffness[at(pair.node)] += pair.stiffness;
+  }
+  if (barrier_element) {
+    body.barrier_force += pair.force;
+    body.barrier_moment += cross(x(pair.node), pair.force);
+    return;
+  }
+  const auto& t = model.triangle[at(pair.element)];
+  const Vec3d second = pair.weight[1] * pair.force, third = pair.weight[2] * pair.force;
+  const std::array<Vec3d, 3> share{pair.force - (second + third), second, third};
+  for (std::size_t a = 0; a < 3; ++a) {
+    nodes.force[at(t[a])] -= share[a];
+    nodes.stiffness[at(t[a])] += pair.weight[a] * pair.stiffness;
+    if (barrier_node) {
+      body.barrier_force -= share[a];
+      body.barrier_moment -= cross(x(t[a]), share[a]);
+    }
+  }
+}
 
 }  // namespace fexp::contact

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
+#include "contact/candidates.hpp"
+#include "contact/node_watch.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
 
@@ -15,25 +18,70 @@ struct BodyContact {
   Vec3d barrier_moment;  ///< The same about the origin [force*length]
 };
 
-struct ContactReport {
-  Index active_pairs{};               ///< Pairs with a force
-  Index candidates{};                 ///< Pairs watched
-  Index searches{};                   ///< Since the island was taken up
-  double deepest{};                   ///< Deepest penetration over contact distance [-]
-  Index deepest_node{no_index};
-  Index deepest_element{no_index};
-  double max_stiffness_over_mass{};   ///< Bound of contact's share of omega^2 [1/time^2]
+/// Contact forces on the nodes of a model; each island writes its own bodies' part, barriers get nothing.
+struct NodeContact {
+  std::vector<Vec3d> force;       // [nodes] [force]
+  std::vector<double> stiffness;  // [nodes]: sum over pairs of k x weight [force/length]
 };
 
-/// Contact inside one island.
+struct ContactReport {
+  Index active_pairs{};  ///< Pairs with a force
+  Index candidates{};    ///< Pairs that are watched
+  Index searches{};      ///< Since the island was taken up
+  double deepest{};      ///< Deepest penetration over contact distance [-]
+  Index deepest_node{no_index};
+  Index deepest_element{no_index};
+  double max_stiffness_over_mass{};  ///< Bound of contact's share of omega^2 [1/time^2]
+};
+
+/// Contact inside one island: of its bodies with each other, with themselves and with the barriers near them. A pair
+/// belongs to the body of its node, or to that of its element when the node is a barrier's.
 class IslandContact {
  public:
+  /// Takes up an island, with the sides that the state remembers. `bodies` and `barriers` are ascending.
   void assign(const model::Model& model, std::span<const Index> bodies, std::span<const Index> barriers,
               const model::State& state);
+
+  /// To be called when nodes have moved, none by more than `largest_way` [length]. Searches when that is needed.
   void advance(const model::Model& model, const model::NodeMotion* motion, double largest_way);
-  ContactReport evaluate(const model::Model& model, const model::NodeMotion* motion, double dt, Vec3d* force,
+
+  /// Forces at the present positions, added to those in `nodes`; sums per body in `bodies`, shape [bodies of the
+  /// model]. `dt`: the step that has led here; 0 where nothing has moved.
+  ContactReport evaluate(const model::Model& model, const model::NodeMotion* motion, double dt, NodeContact& nodes,
                          BodyContact* bodies);
+
+  /// Writes the remembered sides of all pairs to the state of the bodies they belong to.
   void store_sides(const model::Model& model, model::State& state) const;
+
+ private:
+  /// Consecutive rows of candidates: the unit of parallel work. All lists ascend by (node, element).
+  struct Piece {
+    Index first_row{};
+    Index last_row{};
+    std::vector<model::ContactSide> memory;
+    std::vector<model::ContactSide> next_memory;
+    std::vector<ActivePair> active;
+  };
+
+  void search(const model::Model& model, const Positions& x);
+  void cut_into_pieces(const std::vector<model::ContactSide>& memory);
+  void look(const model::Model& model, const Positions& now, const Positions& before, Piece& piece) const;
+  void add(const model::Model& model, const Positions& x, const ActivePair& pair, NodeContact& nodes,
+           BodyContact* bodies);
+  [[nodiscard]] std::vector<model::ContactSide> all_sides() const;
+  [[nodiscard]] double relative_motion(const Positions& x) const;
+  [[nodiscard]] static Index owner(const model::Model& model, Index node, Index element);
+
+  CandidateSearch search_;
+  Candidates candidates_;
+  std::vector<Piece> pieces_;
+  std::vector<Vec3d> searched_at_;  // [search_.nodes()]: positions at the last search
+  std::vector<Index> bodies_;
+  double skin_{};
+  double moved_{};  ///< Bound of the relative motion of any two nodes since the last search [length]
+  bool enabled_{};
+  bool searched_{};
+  ContactReport report_;
 };
 
 }  // namespace fexp::contact

@@ -86,8 +86,7 @@ struct Array {
   static constexpr Range count_range{1.0, 1.0e7, true, true, "1 to 10000000 in each direction"};
   static constexpr auto fields = std::tuple{
       Field{"count", "-", "Number of copies in x, y and z.", &Array::count, count_range, Presence::required},
-      Field{"pitch", "length", "Distance between copies in x, y and z.", &Array::pitch, any_number,
-            Presence::required},
+      Field{"pitch", "length", "Distance between copies in x, y and z.", &Array::pitch, any_number, Presence::required},
   };
 };
 
@@ -107,14 +106,14 @@ struct PartSection {
 struct BodyDescription {
   std::string name;
   std::variant<MeshGenerator, MeshFile> mesh;
-  std::string section;              ///< Section of all parts that `parts` does not name; may be empty.
+  std::string section;  ///< Section of all parts that `parts` does not name; may be empty.
   std::vector<PartSection> parts;
   double scale{1.0};
   std::vector<Rotation> rotate;
-  Vec3d translate{};                ///< [length]
+  Vec3d translate{};  ///< [length]
   std::optional<Array> array;
-  Vec3d velocity{};                 ///< Initial velocity [length/time]
-  Vec3d angular_velocity{};         ///< Initial angular velocity about the centre of mass [1/time]
+  Vec3d velocity{};          ///< Initial velocity [length/time]
+  Vec3d angular_velocity{};  ///< Initial angular velocity about the centre of mass [1/time]
   bool flip_normals{false};
   Place place;
   Place mesh_place;
@@ -222,8 +221,8 @@ struct Gravity {
 /// Pressure on the current faces, positive against the normal (it pushes where the normal points away from).
 struct Pressure {
   std::vector<std::string> bodies;
-  std::string part;   ///< Only this part of the bodies' meshes; all when empty.
-  double value{};     ///< [force/length^2]
+  std::string part;  ///< Only this part of the bodies' meshes; all when empty.
+  double value{};    ///< [force/length^2]
   std::string curve;
   Place place;
 
@@ -257,9 +256,9 @@ struct NodalForce {
 /// Fixed barrier: a half space that nodes cannot enter. It belongs to every island and joins none.
 struct RigidPlane {
   std::string name;
-  Vec3d point{};             ///< [length]
-  Vec3d normal{};            ///< Points to the free side; normalised when the model is built.
-  double stiffness{-1.0};    ///< Penalty stiffness per node [force/length]; negative: from the element step.
+  Vec3d point{};           ///< [length]
+  Vec3d normal{};          ///< Points to the free side; normalised when the model is built.
+  double stiffness{-1.0};  ///< Penalty stiffness per node [force/length]; negative: from the element step.
   Place place;
 
   static constexpr auto fields = std::tuple{
@@ -273,9 +272,9 @@ struct RigidPlane {
 
 struct ContactSettings {
   bool enabled{true};
-  bool self{true};              ///< Bodies touch themselves.
-  double penalty_scale{1.0};    ///< Factor on the stiffness that the element step gives [-]
-  double stiffness{-1.0};       ///< Penalty stiffness per pair [force/length]; negative: from the element step.
+  bool self{true};            ///< Bodies touch themselves.
+  double penalty_scale{1.0};  ///< Factor on the stiffness that the element step gives [-]
+  double stiffness{-1.0};     ///< Penalty stiffness per pair [force/length]; negative: from the element step.
   std::vector<std::array<std::string, 2>> exclude;  ///< Pairs of bodies that do not touch; twice the same: itself.
   Place place;
 
@@ -292,13 +291,13 @@ struct ContactSettings {
 };
 
 struct RunSettings {
-  double duration{};               ///< [time]
-  double safety{0.9};              ///< Step over the critical step [-]
-  double damping{0.0};             ///< Mass-proportional damping coefficient [1/time]
-  double energy_drift_limit{0.05}; ///< Largest relative energy imbalance [-]
-  double step_collapse{1.0e-3};    ///< Stop when the critical step falls below this part of the first one [-]
-  double drilling{0.1};            ///< Drilling tie factor beta [-]
-  int epoch_steps{64};             ///< Most steps between two looks at the interaction graph
+  double duration{};                ///< [time]
+  double safety{0.9};               ///< Step over the critical step [-]
+  double damping{0.0};              ///< Mass-proportional damping coefficient [1/time]
+  double energy_drift_limit{0.05};  ///< Largest relative energy imbalance [-]
+  double step_collapse{1.0e-3};     ///< Stop when the critical step falls below this part of the first one [-]
+  double drilling{0.1};             ///< Drilling tie factor beta [-]
+  int epoch_steps{64};              ///< Most steps between two looks at the interaction graph
 
   static constexpr Range safety_range{0.0, 1.0, false, true, "> 0 and <= 1"};
   static constexpr Range drilling_range{0.0, 1.0, true, true, "0 to 1"};

@@ -38,7 +38,8 @@ struct UvSphere {
   static constexpr auto fields = std::tuple{
       Field{"radius", "length", "Radius of the mid-surface.", &UvSphere::radius, positive, Presence::required},
       Field{"segments", "-", "Segments round the equator.", &UvSphere::segments, ring_range},
-      Field{"rings", "-", "Bands from pole to pole.", &UvSphere::rings, Range{2.0, 100000.0, true, true, "2 to 100000"}},
+      Field{"rings", "-", "Bands from pole to pole.", &UvSphere::rings,
+            Range{2.0, 100000.0, true, true, "2 to 100000"}},
   };
 };
 

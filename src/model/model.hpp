@@ -20,8 +20,8 @@ inline constexpr Index block_lanes = 8;
 
 /// Up to block_lanes consecutive elements of one body with one section.
 struct ElementBlock {
-  Index first{};    ///< First element; the block holds first .. first+count-1.
-  Index count{};    ///< Used lanes; the rest repeats the last element and contributes nothing.
+  Index first{};  ///< First element; the block holds first .. first+count-1.
+  Index count{};  ///< Used lanes; the rest repeats the last element and contributes nothing.
   Index section{};
   Index body{};
 };
@@ -39,8 +39,8 @@ struct SectionData {
 /// Its nodes, elements and blocks are contiguous, in ascending order of body.
 struct Body {
   std::string name;
-  std::string family;  ///< Name in the deck; copies of an array share it.
-  Index description{}; ///< Index into Description::bodies.
+  std::string family;   ///< Name in the deck; copies of an array share it.
+  Index description{};  ///< Index into Description::bodies.
   IndexRange nodes;
   IndexRange elements;
   IndexRange blocks;
@@ -61,8 +61,8 @@ struct FixedNode {
 
 struct PrescribedNode {
   Index node{};
-  std::int8_t dof{};   ///< 0..5
-  double velocity{};   ///< [length/time] or [1/time]
+  std::int8_t dof{};  ///< 0..5
+  double velocity{};  ///< [length/time] or [1/time]
   Index curve{no_index};
 };
 
@@ -106,18 +106,19 @@ struct Model {
   /// Penalty stiffness of the node, c^2 m / dt^2 from its own elements' critical step, times penalty_scale
   /// [force/length]. A pair's stiffness is the series combination of its node and the softest triangle corner.
   std::vector<double> contact_stiffness;
+  std::vector<double> node_size;  ///< Square root of the smallest element area at the node [length]
   std::vector<Index> node_body;
-  std::vector<Index> corner_start;           ///< CSR over nodes, shape [nodes + 1]
-  std::vector<Index> corner;                 ///< 3 x element + corner, ascending within a node, shape [3 x elements]
-  std::vector<std::int64_t> node_label;      ///< The user's id of the node.
+  std::vector<Index> corner_start;       ///< CSR over nodes, shape [nodes + 1]
+  std::vector<Index> corner;             ///< 3 x element + corner, ascending within a node, shape [3 x elements]
+  std::vector<std::int64_t> node_label;  ///< The user's id of the node.
 
   // Elements, shape [elements]
   std::vector<std::array<Index, 3>> triangle;   ///< Corner nodes
   std::vector<std::array<Index, 3>> neighbour;  ///< Element across edge (a, a+1), or no_index
   std::vector<Index> element_block;
-  std::vector<Index> element_part;              ///< Part (physical group) index within the body's mesh
-  std::vector<double> reference_area;           ///< [length^2]
-  std::vector<std::int64_t> element_label;      ///< The user's id of the element.
+  std::vector<Index> element_part;          ///< Part (physical group) index within the body's mesh
+  std::vector<double> reference_area;       ///< [length^2]
+  std::vector<std::int64_t> element_label;  ///< The user's id of the element.
 
   std::vector<ElementBlock> blocks;
   std::vector<SectionData> sections;
@@ -138,8 +139,8 @@ struct Model {
   /// Pairs of bodies (first <= second, sorted) that do not touch.
   std::vector<std::pair<Index, Index>> excluded_pairs;
   RunSettings run;
-  double first_critical_step{};     ///< Smallest element critical step in the reference state [time]
-  Index first_critical_element{};   ///< The element that sets it
+  double first_critical_step{};    ///< Smallest element critical step in the reference state [time]
+  Index first_critical_element{};  ///< The element that sets it
 
   [[nodiscard]] Index node_count() const noexcept { return static_cast<Index>(reference_position.size()); }
   [[nodiscard]] Index element_count() const noexcept { return static_cast<Index>(triangle.size()); }
@@ -151,6 +152,11 @@ struct Model {
   /// True when bodies a and b (which may be the same) can touch by the deck's contact settings.
   [[nodiscard]] bool can_touch(Index a, Index b) const noexcept;
 };
+
+/// How far beyond contact distance a node's side of a triangle is remembered [length], from the size of its elements. A
+/// step carries a node by v dt, which is less than this part of its elements at any speed below a tenth of that of
+/// sound.
+[[nodiscard]] constexpr double watch_margin(double node_size) noexcept { return 0.15 * node_size; }
 
 /// Value of curve `index` at `time`; 1 when index is no_index.
 [[nodiscard]] double curve_value(const Model& model, Index index, double time) noexcept;

@@ -60,12 +60,19 @@ std::size_t bytes_of_body(const Body& body, std::size_t sides) {
   return bytes_before_sides(body) + sizeof(std::int64_t) + sides * side_bytes + sizeof(BodyLedger);
 }
 
-/// True when the sides are such as the body can have: its own nodes, elements of the model, sorted, +1 or -1.
+/// True when the side is one that the body can have: of its own node and any element, or of a barrier's node and its
+/// own element.
+bool is_side_of(const Model& model, const Body& body, const ContactSide& s) {
+  const bool known = s.node >= 0 && s.node < model.node_count() && s.element >= 0 &&
+                     s.element < model.element_count() && (s.side == 1 || s.side == -1);
+  return known && (body.nodes.contains(s.node) ||
+                   (body.elements.contains(s.element) && model.bodies[at(model.node_body[at(s.node)])].barrier));
+}
+
 bool are_sides_of(const Model& model, const Body& body, const std::vector<ContactSide>& sides) {
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const ContactSide& s = sides[i];
-    const bool known = body.nodes.contains(s.node) && s.element >= 0 && s.element < model.element_count() &&
-                       (s.side == 1 || s.side == -1);
+    const bool known = is_side_of(model, body, s);
     if (!known || (i > 0 && std::pair{sides[i - 1].node, sides[i - 1].element} >= std::pair{s.node, s.element})) {
       return false;
     }

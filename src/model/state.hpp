@@ -42,8 +42,8 @@ enum ElementRow : Index {
   element_rows
 };
 
-/// Side of a triangle on which a node stands, remembered while they are within contact distance: +1 where the
-/// triangle's normal points, -1 behind.
+/// Side of a triangle on which a node belongs, remembered while they are near each other: +1 where the triangle's
+/// normal points, -1 behind.
 struct ContactSide {
   Index node{};
   Index element{};
@@ -69,7 +69,8 @@ struct State {
   std::vector<NodeMotion> motion;               // [nodes]
   std::vector<NodeAcceleration> acceleration;   // [nodes]
   AlignedVector<double> history;                // [blocks][element_rows][block_lanes]
-  std::vector<std::vector<ContactSide>> sides;  // [bodies]: sorted by (node, element); nodes of that body
+  std::vector<std::vector<ContactSide>> sides;  // [bodies]: sorted by (node, element); the body's nodes, and
+                                                // barriers' nodes with its elements
   std::vector<BodyLedger> ledger;               // [bodies]
 };
 

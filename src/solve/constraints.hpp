@@ -17,9 +17,9 @@ struct PrescribedReport {
 /// Which of the two half steps a prescribed velocity closes.
 enum class HalfStep { opening, closing };
 
-/// Sets prescribed velocities after a half step has been taken with the unconstrained acceleration. `time` is the end of
-/// that half step (mid-step or step end) and `half_dt` its length. The work booked is that of the constraint force over
-/// the step's displacement, so that it stands in the same balance as the other trapezoidal works.
+/// Sets prescribed velocities after a half step has been taken with the unconstrained acceleration. `time` is the end
+/// of that half step (mid-step or step end) and `half_dt` its length. The work booked is that of the constraint force
+/// over the step's displacement, so that it stands in the same balance as the other trapezoidal works.
 PrescribedReport prescribe_velocities(const model::Model& model, model::State& state, Index body, HalfStep half,
                                       double time, double half_dt);
 

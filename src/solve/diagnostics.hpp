@@ -17,18 +17,16 @@ struct Energies {
   double damping{};   ///< Work taken out by damping
 
   /// What the body has now, less what was put in: constant in exact arithmetic and time.
-  [[nodiscard]] double balance() const noexcept {
-    return kinetic + internal + contact + barrier + damping - external;
-  }
+  [[nodiscard]] double balance() const noexcept { return kinetic + internal + contact + barrier + damping - external; }
   Energies& operator+=(const Energies& other) noexcept;
 };
 
 struct Momenta {
-  Vec3d linear;                   ///< Sum of m v [force*time]
-  Vec3d angular;                  ///< Sum of x cross m v + I omega about the origin [force*length*time]
-  double linear_scale{};          ///< Sum of |m v|
-  double angular_scale{};         ///< Sum of |x cross m v| + |I omega|
-  Vec3d external_impulse;         ///< Put in from outside since the start
+  Vec3d linear;            ///< Sum of m v [force*time]
+  Vec3d angular;           ///< Sum of x cross m v + I omega about the origin [force*length*time]
+  double linear_scale{};   ///< Sum of |m v|
+  double angular_scale{};  ///< Sum of |x cross m v| + |I omega|
+  Vec3d external_impulse;  ///< Put in from outside since the start
   Vec3d external_angular_impulse;
 
   Momenta& operator+=(const Momenta& other) noexcept;
@@ -47,7 +45,7 @@ struct Diagnostics {
 
 /// Smallest critical step of a range of elements and the lowest element that has it.
 struct CriticalStep {
-  double step{HUGE_VAL};    ///< [time]; zero or NaN-free: a collapsed element reports 0
+  double step{HUGE_VAL};  ///< [time]; zero or NaN-free: a collapsed element reports 0
   Index element{no_index};
 };
 

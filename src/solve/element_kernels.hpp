@@ -21,13 +21,13 @@ struct CornerForce {
 /// What the element kernels read and write. Plain pointers: the kernels are compiled for several instruction sets and
 /// must not share inline code with the rest of the program.
 struct ElementKernelArguments {
-  const model::NodeMotion* motion{};            // [nodes]: x(n+1), v(n+1/2), omega(n+1/2)
-  const std::array<Index, 3>* triangle{};       // [elements]
-  const model::ElementBlock* blocks{};          // [blocks]
-  const physics::ShellSection* sections{};      // [sections]
-  double* history{};                            // [blocks][element_rows][block_lanes]
-  CornerForce* corner_force{};                  // [elements][3]
-  double dt{};                                  ///< Step just taken [time]; 0 evaluates forces of the present state.
+  const model::NodeMotion* motion{};        // [nodes]: x(n+1), v(n+1/2), omega(n+1/2)
+  const std::array<Index, 3>* triangle{};   // [elements]
+  const model::ElementBlock* blocks{};      // [blocks]
+  const physics::ShellSection* sections{};  // [sections]
+  double* history{};                        // [blocks][element_rows][block_lanes]
+  CornerForce* corner_force{};              // [elements][3]
+  double dt{};                              ///< Step just taken [time]; 0 evaluates forces of the present state.
 };
 
 /// Updates resultants and writes corner forces of blocks [begin, end).

@@ -172,8 +172,7 @@ void IslandSolver::prescribe(const Step& step, HalfStep half) {
   }
   const double time = half == HalfStep::opening ? step.middle_time() : step.end_time;
   for (const Index body : bodies_) {
-    const PrescribedReport report =
-        prescribe_velocities(step.model, step.state, body, half, time, step.half_dt());
+    const PrescribedReport report = prescribe_velocities(step.model, step.state, body, half, time, step.half_dt());
     model::BodyLedger& ledger = step.state.ledger[at(body)];
     ledger.external_work += report.work;
     ledger.external_impulse += report.impulse;
@@ -219,14 +218,15 @@ void IslandSolver::contact_forces(const Step& step) {
   if (contact_written_) {
     for (const Index index : bodies_) {
       const IndexRange nodes = step.model.bodies[at(index)].nodes;
-      std::fill(step.workspace.contact_force.begin() + nodes.begin, step.workspace.contact_force.begin() + nodes.end,
-                Vec3d{});
+      contact::NodeContact& contact = step.workspace.contact;
+      std::fill(contact.force.begin() + nodes.begin, contact.force.begin() + nodes.end, Vec3d{});
+      std::fill(contact.stiffness.begin() + nodes.begin, contact.stiffness.begin() + nodes.end, 0.0);
     }
   }
   for (const Index index : bodies_) {
     step.workspace.body_contact[at(index)] = {};
   }
-  contact_report_ = contact_.evaluate(step.model, step.state.motion.data(), step.dt, step.workspace.contact_force.data(),
+  contact_report_ = contact_.evaluate(step.model, step.state.motion.data(), step.dt, step.workspace.contact,
                                       step.workspace.body_contact.data());
   contact_written_ = contact_report_.active_pairs > 0;
   for (const Index index : bodies_) {
@@ -235,16 +235,18 @@ void IslandSolver::contact_forces(const Step& step) {
 }
 
 void IslandSolver::element_forces(const Step& step) {
-  const ElementKernelArguments arguments{step.state.motion.data(),        step.model.triangle.data(),
-                                         step.model.blocks.data(),        step.workspace.sections.data(),
-                                         step.state.history.data(),       step.workspace.corner_force.data(),
+  const ElementKernelArguments arguments{step.state.motion.data(),
+                                         step.model.triangle.data(),
+                                         step.model.blocks.data(),
+                                         step.workspace.sections.data(),
+                                         step.state.history.data(),
+                                         step.workspace.corner_force.data(),
                                          step.dt};
   const ElementKernel kernel = step.workspace.kernel.function;
   const auto update_body = [&](Index i) {
     const IndexRange blocks = step.model.bodies[at(bodies_[at(i)])].blocks;
-    parallel::for_ranges(blocks.size(), block_grain, [&](Index begin, Index end) {
-      kernel(arguments, blocks.begin + begin, blocks.begin + end);
-    });
+    parallel::for_ranges(blocks.size(), block_grain,
+                         [&](Index begin, Index end) { kernel(arguments, blocks.begin + begin, blocks.begin + end); });
   };
   parallel::for_each(static_cast<Index>(bodies_.size()), body_grain, update_body);
 }
@@ -257,8 +259,7 @@ void IslandSolver::accelerate(const Step& step) {
       evaluate_loads(step.model, step.state.motion.data(), step.end_time, bodies_[at(i)], workspace.load.data());
     });
   }
-  parallel::for_each(static_cast<Index>(chunks_.size()), chunk_grain,
-                     [&](Index i) { accelerate_chunk(step, at(i)); });
+  parallel::for_each(static_cast<Index>(chunks_.size()), chunk_grain, [&](Index i) { accelerate_chunk(step, at(i)); });
   if (!workspace.external) {
     return;
   }
@@ -307,7 +308,7 @@ void IslandSolver::accelerate_chunk(const Step& step, std::size_t chunk_index) {
       internal += corner.force;
       internal_moment += corner.moment;
     }
-    Vec3d force = workspace.contact_force[at(n)] - internal;
+    Vec3d force = workspace.contact.force[at(n)] - internal;
     Vec3d moment = -internal_moment;
     const model::NodeMotion& motion = step.state.motion[at(n)];
     if (workspace.external) {

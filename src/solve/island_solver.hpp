@@ -15,9 +15,9 @@ namespace fexp::solve {
 
 /// One epoch's work for an island.
 struct EpochPlan {
-  double dt{};                 ///< [time]
+  double dt{};  ///< [time]
   Index steps{};
-  std::int64_t hash_every{};   ///< Record body hashes after every so many steps of the run; 0: never.
+  std::int64_t hash_every{};  ///< Record body hashes after every so many steps of the run; 0: never.
   /// How far a body's nodes may move before it leaves its swept box [length], shape [bodies of the model].
   std::span<const double> allowance;
 };
@@ -35,13 +35,13 @@ struct IslandReport {
   Index steps_done{};
   StopReason stop{StopReason::none};
   Index stop_body{no_index};
-  Index stop_node{no_index};          ///< For not_finite: the lowest node concerned.
-  double contact_frequency2{};        ///< Largest bound of omega^2 from contact and planes seen [1/time^2]
-  Index active_pairs{};               ///< At the last step
+  Index stop_node{no_index};    ///< For not_finite: the lowest node concerned.
+  double contact_frequency2{};  ///< Largest bound of omega^2 from contact and planes seen [1/time^2]
+  Index active_pairs{};         ///< At the last step
   Index most_active_pairs{};
   Index candidates{};
   Index searches{};
-  double deepest{};                   ///< Deepest penetration over contact distance seen [-]
+  double deepest{};  ///< Deepest penetration over contact distance seen [-]
   Index deepest_node{no_index};
   Index deepest_element{no_index};
 };
@@ -107,9 +107,9 @@ class IslandSolver {
   std::vector<Index> bodies_;
   std::vector<Index> barriers_;
   std::vector<Chunk> chunks_;
-  std::vector<Partial> partials_;       // [chunks]
-  std::vector<Vec3d> plane_partials_;   // [chunks][planes]
-  std::vector<double> travelled_;       // [bodies of the island]: bound of the distance since the epoch's start
+  std::vector<Partial> partials_;      // [chunks]
+  std::vector<Vec3d> plane_partials_;  // [chunks][planes]
+  std::vector<double> travelled_;      // [bodies of the island]: bound of the distance since the epoch's start
   contact::ContactReport contact_report_;
   double barrier_frequency2_{};
   Index elements_{};

@@ -14,8 +14,8 @@ void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, 
 
 /// Force of a rigid plane on a node, and its potential.
 struct PlaneReaction {
-  Vec3d force;      ///< [force]
-  double energy{};  ///< 1/2 k g^2 [force*length]
+  Vec3d force;         ///< [force]
+  double energy{};     ///< 1/2 k g^2 [force*length]
   double stiffness{};  ///< k while the node touches, else 0 [force/length]
 };
 

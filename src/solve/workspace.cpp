@@ -8,7 +8,8 @@ Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel) 
     sections.push_back({section.thickness, section.moduli, model.run.drilling});
   }
   corner_force.resize(3 * model.triangle.size());
-  contact_force.resize(model.reference_position.size());
+  contact.force.resize(model.reference_position.size());
+  contact.stiffness.resize(model.reference_position.size());
   if (!model.gravity.empty() || !model.pressure.empty() || !model.forces.empty()) {
     load.resize(model.reference_position.size());
   }

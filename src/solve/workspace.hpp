@@ -19,9 +19,9 @@ struct NodalAction {
 
 /// Sums of external actions over one body at one instant.
 struct BodyActions {
-  Vec3d force;                    ///< [force]
-  Vec3d moment;                   ///< About the origin [force*length]
-  std::vector<Vec3d> plane_force; ///< Force of each rigid plane on the body [force], shape [planes]
+  Vec3d force;                     ///< [force]
+  Vec3d moment;                    ///< About the origin [force*length]
+  std::vector<Vec3d> plane_force;  ///< Force of each rigid plane on the body [force], shape [planes]
 };
 
 /// Arrays that every step overwrites; one for the whole model, each island writes only its own bodies' parts.
@@ -31,10 +31,10 @@ struct Workspace {
   SelectedKernel kernel;
   std::vector<physics::ShellSection> sections;  // [sections]
   AlignedVector<CornerForce> corner_force;      // [elements][3]
-  std::vector<Vec3d> contact_force;             // [nodes], at the last evaluated positions [force]
+  contact::NodeContact contact;                 // At the last evaluated positions
   /// Loads and gravity at the last evaluated instant, shape [nodes]; empty when the model has none.
   std::vector<NodalAction> load;
-  std::vector<BodyActions> actions;             // [bodies]
+  std::vector<BodyActions> actions;                // [bodies]
   std::vector<contact::BodyContact> body_contact;  // [bodies]
   bool external{};  ///< Anything at all acts on the model from outside (loads, planes, damping, conditions).
 };

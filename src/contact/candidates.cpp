@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contact/candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "parallel/parallel.hpp"
+
+namespace fexp::contact {
+
+namespace {
+
+constexpr Index piece_elements = 256;
+constexpr Index point_grain = 4096;
+/// Distances are rounded; a pair on the very border is taken.
+constexpr double rounding = 1.0e-9;
+
+}  // namespace
+
+void CandidateSearch::assign(const model::Model& model, std::span<const Index> bodies) {
+  nodes_.clear();
+  elements_.clear();
+  largest_reach_ = 0.0;
+  for (const Index index : bodies) {
+    const model::Body& body = model.bodies[at(index)];
+    for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
+      nodes_.push_back(n);
+      largest_reach_ =
+          std::max(largest_reach_, model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)]));
+    }
+    for (Index e = body.elements.begin; e < body.elements.end; ++e) {
+      elements_.push_back(e);
+    }
+  }
+  points_.resize(nodes_.size());
+  pairs_.resize((elements_.size() + piece_elements - 1) / piece_elements);
+}
+
+void CandidateSearch::search(const model::Model& model, const Positions& x, double skin,
+                             std::span<const Index> remembered, Candidates& found) {
+  parallel::for_each(node_count(), point_grain, [&](Index i) { points_[at(i)] = x(nodes_[at(i)]); });
+  tree_.build(points_);
+  query(model, x, skin);
+  fill_rows(remembered, found);
+}
+
+void CandidateSearch::query(const model::Model& model, const Positions& x, double skin) {
+  parallel::for_each(static_cast<Index>(pairs_.size()), 1, [&](Index piece) {
+    std::vector<Pair>& pairs = pairs_[at(piece)];
+    pairs.clear();
+    const Index end = std::min((piece + 1) * piece_elements, static_cast<Index>(elements_.size()));
+    for (Index k = piece * piece_elements; k < end; ++k) {
+      const Index element = elements_[at(k)];
+      const auto& t = model.triangle[at(element)];
+      Box box;
+      for (const Index n : t) {
+        box.include(x(n));
+      }
+      box = box.grown((largest_reach_ + half_thickness_of(model, element) + skin) * (1.0 + rounding));
+      tree_.query(box, [&](Index local) {
+        const Index node = nodes_[at(local)];
+        if (!may_touch(model, node, element)) {
+          return;
+        }
+        const double distance = std::sqrt(closest_on(model, x, element, points_[at(local)]).distance2);
+        const double slack = distance * (1.0 - rounding) - watch_distance(model, node, element) * (1.0 + rounding);
+        if (slack <= skin) {
+          pairs.push_back({local, element, slack});
+        }
+      });
+    }
+  });
+}
+
+/// Sorts the pairs by node; within a node they already ascend, because the pieces do.
+void CandidateSearch::fill_rows(std::span<const Index> remembered, Candidates& found) {
+  row_size_.assign(nodes_.size(), 0);
+  for (const std::vector<Pair>& pairs : pairs_) {
+    for (const Pair& pair : pairs) {
+      ++row_size_[at(pair.local)];
+    }
+  }
+  found.node.clear();
+  found.start.assign(1, 0);
+  std::size_t next = 0;
+  for (std::size_t local = 0; local < nodes_.size(); ++local) {
+    while (next < remembered.size() && remembered[next] < nodes_[local]) {
+      ++next;
+    }
+    const bool kept = next < remembered.size() && remembered[next] == nodes_[local];
+    if (row_size_[local] == 0 && !kept) {
+      continue;
+    }
+    found.node.push_back(nodes_[local]);
+    found.start.push_back(found.start.back() + row_size_[local]);
+    // From now on the row of this node.
+    row_size_[local] = static_cast<Index>(found.node.size()) - 1;
+  }
+  found.element.resize(at(found.start.back()));
+  found.slack.assign(found.node.size(), HUGE_VAL);
+  std::vector<Index> place(found.start.begin(), found.start.end() - 1);
+  for (const std::vector<Pair>& pairs : pairs_) {
+    for (const Pair& pair : pairs) {
+      const std::size_t row = at(row_size_[at(pair.local)]);
+      found.element[at(place[row]++)] = pair.element;
+      found.slack[row] = std::min(found.slack[row], pair.slack);
+    }
+  }
+}
+
+}  // namespace fexp::contact

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "contact/surface.hpp"
+
+namespace fexp::contact {
+
+/// A pair that pushes: the force on the node; the element's corners get it back by their weights.
+struct ActivePair {
+  Index node{};
+  Index element{};
+  std::array<double, 3> weight{};
+  Vec3d force;         ///< On the node [force]
+  double energy{};     ///< 1/2 k g^2 [force*length]
+  double stiffness{};  ///< [force/length]
+  double depth{};      ///< Penetration over contact distance [-]
+};
+
+/// Watches one node at a time against the triangles near it: remembers on which side of each it stands, decides which
+/// of the triangles that share the closest feature acts, and gives the penalty forces.
+///
+/// Gap of node i and element T [W06; REK19 eq. 6-7, whose eq. 6 prints p_N g_N <= 0 where complementarity needs = 0]:
+/// g = side * s - d, with the signed distance s to the closest point of T, the remembered side (+1 or -1), and the
+/// contact distance d, the half thickness of the node plus that of the surface at the closest point. Force k (-g) where
+/// g < 0, along the offset from the closest point, away from it on the remembered side: a node that has come through is
+/// pushed back the way it came. Pairs that are closer than d in the reference configuration take that distance for d,
+/// so that nothing pushes in a mesh as it was built.
+class NodeWatch {
+ public:
+  NodeWatch(const model::Model& model, Positions now, Positions before) : model_(model), now_(now), before_(before) {}
+
+  /// Looks at `node`, which has `candidates` and `memory` (sides of this node's pairs at the last step; both ascending
+  /// in element). Appends what is remembered now to `remembered` and pairs with a force to `active`.
+  void look(Index node, std::span<const Index> candidates, std::span<const model::ContactSide> memory,
+            std::vector<model::ContactSide>& remembered, std::vector<ActivePair>& active);
+
+ private:
+  struct Watched {
+    Index element{};
+    physics::ClosestPoint closest{};
+    Vec3d normal;            ///< Unit normal of the element
+    double distance{};       ///< To the closest point [length]
+    int present_side{};      ///< Where the node stands now
+    int side{};              ///< Where it belongs; 0 while not decided
+    bool rim{};              ///< The closest point lies on the rim of an open surface
+    bool acts{};             ///< No element that shares the feature is closer
+    Index closer{no_index};  ///< The closest of those, when it does not act
+  };
+
+  void gather(std::span<const Index> candidates, std::span<const model::ContactSide> memory);
+  void add_ring(Index element);
+  void measure(std::span<const model::ContactSide> memory);
+  void decide_sides(std::span<const model::ContactSide> memory);
+  void leave_one_of_smooth_neighbours();
+  void push(std::vector<ActivePair>& active) const;
+
+  [[nodiscard]] bool is_deep(Index element, double distance2, double watch,
+                             std::span<const model::ContactSide> memory) const;
+  [[nodiscard]] Watched measured(Index element) const;
+  [[nodiscard]] int inherited_side(Index element, std::span<const model::ContactSide> memory) const;
+  [[nodiscard]] double contact_distance(const Watched& watched) const;
+  [[nodiscard]] bool share_corner(Index a, Index b) const;
+
+  const model::Model& model_;
+  Positions now_;
+  Positions before_;
+  Index node_{};
+  Vec3d point_;
+  std::vector<Index> elements_;
+  std::vector<Index> deep_;  ///< Elements round those the node has come through, themselves included
+  std::vector<Watched> watched_;
+};
+
+}  // namespace fexp::contact

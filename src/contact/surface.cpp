@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contact/surface.hpp"
+
+#include <cmath>
+
+namespace fexp::contact {
+
+namespace {
+
+using physics::Feature;
+
+bool has_free_edge_at(const model::Model& model, Index element, Index node) noexcept {
+  const auto& t = model.triangle[at(element)];
+  const auto& across = model.neighbour[at(element)];
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (t[a] == node && (across[a] == no_index || across[(a + 2) % 3] == no_index)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_on_rim(const model::Model& model, Index element, Feature feature) noexcept {
+  if (physics::is_edge(feature)) {
+    return model.neighbour[at(element)][physics::number_of(feature)] == no_index;
+  }
+  if (!physics::is_corner(feature)) {
+    return false;
+  }
+  const Index node = model.triangle[at(element)][physics::number_of(feature)];
+  bool rim = has_free_edge_at(model, element, node);
+  for_each_sharing(model, element, feature, [&](Index other) { rim = rim || has_free_edge_at(model, other, node); });
+  return rim;
+}
+
+Vec3d unit_normal(const model::Model& model, const Positions& x, Index element) noexcept {
+  const auto& t = model.triangle[at(element)];
+  const Vec3d origin = x(t[0]);
+  const Vec3d normal = cross(x(t[1]) - origin, x(t[2]) - origin);
+  return (1.0 / norm(normal)) * normal;
+}
+
+int side_of(const model::Model& model, const Positions& x, Index element,
+            const physics::ClosestPoint& closest) noexcept {
+  double steepest = dot(closest.offset, unit_normal(model, x, element));
+  for_each_sharing(model, element, closest.feature, [&](Index other) {
+    const double view = dot(closest.offset, unit_normal(model, x, other));
+    steepest = std::abs(view) > std::abs(steepest) ? view : steepest;
+  });
+  return steepest < 0.0 ? -1 : 1;
+}
+
+bool may_touch(const model::Model& model, Index node, Index element) noexcept {
+  const auto& t = model.triangle[at(element)];
+  if (t[0] == node || t[1] == node || t[2] == node) {
+    return false;
+  }
+  const Index a = model.node_body[at(node)], b = body_of_element(model, element);
+  return !(model.bodies[at(a)].barrier && model.bodies[at(b)].barrier) && model.can_touch(a < b ? a : b, a < b ? b : a);
+}
+
+}  // namespace fexp::contact

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.hpp"
+#include "model/state.hpp"
+#include "physics/closest_point.hpp"
+
+namespace fexp::contact {
+
+/// Positions of nodes now, or `back` earlier along their velocities.
+struct Positions {
+  const model::NodeMotion* motion{};  // [nodes]
+  double back{};                      ///< [time]
+
+  [[nodiscard]] Vec3d operator()(Index node) const noexcept {
+    const model::NodeMotion& m = motion[node];
+    return back == 0.0 ? m.position : m.position - back * m.velocity;
+  }
+};
+
+[[nodiscard]] inline physics::ClosestPoint closest_on(const model::Model& model, const Positions& x, Index element,
+                                                      const Vec3d& point) noexcept {
+  const auto& t = model.triangle[at(element)];
+  return physics::closest_point(point, x(t[0]), x(t[1]), x(t[2]));
+}
+
+/// Calls visit(other) for every other element that shares the feature on which a closest point of `element` lies: none
+/// for the face, the neighbour across an edge, all elements round a corner in ascending order.
+template <class Visit>
+void for_each_sharing(const model::Model& model, Index element, physics::Feature feature, const Visit& visit) {
+  if (physics::is_edge(feature)) {
+    const Index other = model.neighbour[at(element)][physics::number_of(feature)];
+    if (other != no_index) {
+      visit(other);
+    }
+  } else if (physics::is_corner(feature)) {
+    const Index node = model.triangle[at(element)][physics::number_of(feature)];
+    for (Index c = model.corner_start[at(node)]; c < model.corner_start[at(node) + 1]; ++c) {
+      const Index other = model.corner[at(c)] / 3;
+      if (other != element) {
+        visit(other);
+      }
+    }
+  }
+}
+
+/// Whether the feature lies on the rim of an open surface, where a node may go round from one side to the other.
+[[nodiscard]] bool is_on_rim(const model::Model& model, Index element, physics::Feature feature) noexcept;
+
+/// Side of the surface on which a point stands: +1 where the normals point, -1 behind. At an edge or a corner the
+/// element with the steepest view of the point decides, which is right for every fold.
+[[nodiscard]] int side_of(const model::Model& model, const Positions& x, Index element,
+                          const physics::ClosestPoint& closest) noexcept;
+
+/// Unit normal of an element.
+[[nodiscard]] Vec3d unit_normal(const model::Model& model, const Positions& x, Index element) noexcept;
+
+/// Whether the deck lets the node touch the element: their bodies may, they are not both barriers, and the node is no
+/// corner of the element.
+[[nodiscard]] bool may_touch(const model::Model& model, Index node, Index element) noexcept;
+
+[[nodiscard]] inline Index body_of_element(const model::Model& model, Index element) noexcept {
+  return model.blocks[at(model.element_block[at(element)])].body;
+}
+
+/// Largest half thickness at the element's corners [length].
+[[nodiscard]] inline double half_thickness_of(const model::Model& model, Index element) noexcept {
+  const auto& t = model.triangle[at(element)];
+  const double a = model.half_thickness[at(t[0])], b = model.half_thickness[at(t[1])];
+  const double c = model.half_thickness[at(t[2])];
+  const double larger = a > b ? a : b;
+  return larger > c ? larger : c;
+}
+
+/// Distance up to which the side of a pair is remembered [length]. The margin beyond contact distance makes sure that
+/// the side is known before the node can come through in one step.
+[[nodiscard]] inline double watch_distance(const model::Model& model, Index node, Index element) noexcept {
+  return model.half_thickness[at(node)] + half_thickness_of(model, element) +
+         model::watch_margin(model.node_size[at(node)]);
+}
+
+}  // namespace fexp::contact

@@ -28,11 +28,10 @@ double relative(double error, double scale) noexcept { return scale > 0.0 ? std:
 struct Simulation::Attempt {
   double dt{};
   Index steps{};
-  bool reaches_target{};
+  double end_time{};              ///< The target's when the steps reach it
   Index most_steps{};             ///< Lowered when the guard trips.
   double contact_frequency2{};    ///< Raised when the guard trips.
   double element_frequency2{};    ///< Likewise.
-  double slack{1.0};              ///< Raised when a single step leaves its swept box.
   std::vector<double> allowance;  // [bodies]
   std::vector<Box> swept;         // [bodies]
 };
@@ -66,10 +65,11 @@ void Simulation::plan(double target, Attempt& attempt) const {
   const double largest = model_.run.safety * 2.0 / std::sqrt(frequency2);
   const double left = target - state_.time;
   const double needed = std::ceil(left / largest);
-  attempt.reaches_target = needed <= static_cast<double>(attempt.most_steps);
-  attempt.steps = attempt.reaches_target ? std::max(static_cast<Index>(needed), Index{1}) : attempt.most_steps;
-  attempt.dt = attempt.reaches_target ? left / static_cast<double>(attempt.steps) : largest;
-  attempt.allowance = travel_allowance(model_, state_, attempt.dt, attempt.steps, attempt.slack);
+  const bool reaches_target = needed <= static_cast<double>(attempt.most_steps);
+  attempt.steps = reaches_target ? std::max(static_cast<Index>(needed), Index{1}) : attempt.most_steps;
+  attempt.dt = reaches_target ? left / static_cast<double>(attempt.steps) : largest;
+  attempt.end_time = reaches_target ? target : state_.time + static_cast<double>(attempt.steps) * attempt.dt;
+  attempt.allowance = travel_allowance(model_, state_, attempt.dt, attempt.steps);
   attempt.swept = swept_boxes(model_, state_, attempt.allowance);
 }
 
@@ -115,7 +115,7 @@ std::vector<solve::IslandReport> Simulation::advance_islands(const Attempt& atte
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
     return solvers_[at(a)]->element_count() > solvers_[at(b)]->element_count();
   });
-  const solve::EpochPlan plan{attempt.dt, attempt.steps, hash_every, attempt.allowance};
+  const solve::EpochPlan plan{attempt.dt, attempt.steps, attempt.end_time, hash_every, attempt.allowance};
   parallel::for_each(count, 1, [&](Index k) {
     const std::size_t i = at(order[at(k)]);
     islands[i] = solvers_[i]->advance(model_, state_, workspace_, plan, hashes[i]);
@@ -160,7 +160,7 @@ EpochReport Simulation::run_epoch(double target, std::int64_t hash_every) {
     }
     if (verdict == Verdict::accept) {
       state_.step += attempt.steps;
-      state_.time = attempt.reaches_target ? target : state_.time + static_cast<double>(attempt.steps) * attempt.dt;
+      state_.time = attempt.end_time;
       report.dt = attempt.dt;
       report.steps = attempt.steps;
       gather(islands, report);
@@ -185,18 +185,19 @@ Simulation::Verdict Simulation::guard(Attempt& attempt, const std::vector<solve:
     broken = broken || island.stop == solve::StopReason::not_finite;
     contact2 = std::max(contact2, island.contact_frequency2);
   }
+  if (left_box) {
+    // First of all, as whatever else went wrong may have come of a contact that was missed. A single step stays within:
+    // its way is that of the first half step, which the allowance was made from.
+    attempt.most_steps = std::max(attempt.steps / 2, Index{1});
+    return Verdict::redo;
+  }
   if (broken) {
-    // The same steps up to the one that failed are redone, so that the results end with the last sound state.
+    // The steps up to the one that failed are redone, so that the results end with the last sound state.
     if (fault.kind == FaultKind::none) {
       fault = not_finite_fault(islands);
     }
     attempt.most_steps = good;
     return good == 0 ? Verdict::give_up : Verdict::redo;
-  }
-  if (left_box) {
-    attempt.slack = attempt.steps == 1 ? 2.0 * attempt.slack : attempt.slack;
-    attempt.most_steps = std::max(attempt.steps / 2, Index{1});
-    return Verdict::redo;
   }
   const solve::CriticalStep critical = solve::critical_step(model_, state_);
   const double element2 = frequency2(critical);

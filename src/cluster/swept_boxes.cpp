@@ -50,8 +50,7 @@ double largest_extent(const Box& box) {
 
 }  // namespace
 
-std::vector<double> travel_allowance(const model::Model& model, const model::State& state, double dt, Index steps,
-                                     double slack) {
+std::vector<double> travel_allowance(const model::Model& model, const model::State& state, double dt, Index steps) {
   std::vector<double> allowance(model.bodies.size(), 0.0);
   parallel::for_each(model.body_count(), body_grain, [&](Index b) {
     const model::Body& body = model.bodies[at(b)];
@@ -66,7 +65,7 @@ std::vector<double> travel_allowance(const model::Model& model, const model::Sta
     const double speed = std::sqrt(speed2) + prescribed_speed(model, body);
     double reach = 0.0;
     const double size = largest_extent(node_box(model, state, body, reach));
-    allowance[at(b)] = slack * (velocity_margin * speed * dt * static_cast<double>(steps) + free_play * size);
+    allowance[at(b)] = velocity_margin * speed * dt * static_cast<double>(steps) + free_play * size;
   });
   return allowance;
 }

@@ -101,6 +101,11 @@ State initial_state(const Model& model) {
       }
     }
   }
+  for (const SymmetryNode& symmetry : model.symmetry) {
+    NodeMotion& motion = state.motion[at(symmetry.node)];
+    motion.velocity -= dot(motion.velocity, symmetry.normal) * symmetry.normal;
+    motion.rotation_rate = dot(motion.rotation_rate, symmetry.normal) * symmetry.normal;
+  }
   state.history.assign(model.blocks.size() * element_rows * at(block_lanes), 0.0);
   state.sides.resize(model.bodies.size());
   state.ledger.resize(model.bodies.size());

@@ -74,7 +74,8 @@ struct State {
   std::vector<BodyLedger> ledger;               // [bodies]
 };
 
-/// State at time zero: reference positions, initial velocities, no stress; accelerations are left zero.
+/// State at time zero: reference positions, initial velocities as far as fixed nodes and planes of symmetry allow, no
+/// stress; accelerations are left zero.
 [[nodiscard]] State initial_state(const Model& model);
 
 /// Appends the canonical little-endian bytes of one body's state: the one form used for hashes, checkpoints and the

@@ -56,12 +56,10 @@ void hold_constraints(const model::Model& model, model::State& state, Index body
   for (Index i = body.fixed.begin; i < body.fixed.end; ++i) {
     const model::FixedNode& fixed = model.fixed[at(i)];
     model::NodeAcceleration& acceleration = state.acceleration[at(fixed.node)];
-    model::NodeMotion& motion = state.motion[at(fixed.node)];
     const model::NodeAcceleration before = acceleration;
     for (int dof = 0; dof < 6; ++dof) {
       if ((fixed.mask >> dof & 1) != 0) {
         *component(acceleration.linear, acceleration.angular, dof) = 0.0;
-        *component(motion.velocity, motion.rotation_rate, dof) = 0.0;
       }
     }
     book_reaction(model, state, fixed.node, acceleration.linear - before.linear, acceleration.angular - before.angular,
@@ -70,13 +68,10 @@ void hold_constraints(const model::Model& model, model::State& state, Index body
   for (Index i = body.symmetry.begin; i < body.symmetry.end; ++i) {
     const model::SymmetryNode& symmetry = model.symmetry[at(i)];
     model::NodeAcceleration& acceleration = state.acceleration[at(symmetry.node)];
-    model::NodeMotion& motion = state.motion[at(symmetry.node)];
     const model::NodeAcceleration before = acceleration;
     const Vec3d& n = symmetry.normal;
     acceleration.linear -= dot(acceleration.linear, n) * n;
     acceleration.angular = dot(acceleration.angular, n) * n;
-    motion.velocity -= dot(motion.velocity, n) * n;
-    motion.rotation_rate = dot(motion.rotation_rate, n) * n;
     book_reaction(model, state, symmetry.node, acceleration.linear - before.linear,
                   acceleration.angular - before.angular, actions);
   }

@@ -23,8 +23,8 @@ enum class HalfStep { opening, closing };
 PrescribedReport prescribe_velocities(const model::Model& model, model::State& state, Index body, HalfStep half,
                                       double time, double half_dt);
 
-/// Removes held components (fixed, symmetry) from accelerations and velocities and adds the reactions to the body's
-/// actions. To be called when new accelerations are known, before the closing half step.
+/// Removes held components (fixed, symmetry) from the accelerations and adds the reactions to the body's actions.
+/// Velocities, which start without them, are not touched: evaluating a state again leaves its bits as they are.
 void hold_constraints(const model::Model& model, model::State& state, Index body, BodyActions& actions);
 
 }  // namespace fexp::solve

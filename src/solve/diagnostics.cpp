@@ -84,14 +84,14 @@ Momenta& Momenta::operator+=(const Momenta& other) noexcept {
   return *this;
 }
 
-Diagnostics body_diagnostics(const model::Model& model, const model::State& state, Index index) {
-  const model::Body& body = model.bodies[at(index)];
-  const model::BodyLedger& ledger = state.ledger[at(index)];
+Diagnostics body_diagnostics(const model::Model& model, const model::State& state, Index body) {
+  const model::Body& owner = model.bodies[at(body)];
+  const model::BodyLedger& ledger = state.ledger[at(body)];
   Diagnostics sum = parallel::ordered_fold(
-      body.nodes, piece, Diagnostics{}, [&](Index begin, Index end) { return node_sums(model, state, begin, end); },
+      owner.nodes, piece, Diagnostics{}, [&](Index begin, Index end) { return node_sums(model, state, begin, end); },
       plus);
   sum.energies.internal = parallel::ordered_fold(
-      body.elements, piece, 0.0, [&](Index begin, Index end) { return internal_energy(model, state, begin, end); },
+      owner.elements, piece, 0.0, [&](Index begin, Index end) { return internal_energy(model, state, begin, end); },
       std::plus<>());
   sum.energies.contact = ledger.contact_energy;
   sum.energies.barrier = ledger.barrier_energy;

@@ -69,19 +69,20 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
   const double start_time = state.time;
   const Index searches_before = contact_report_.searches;
   for (Index i = 0; i < plan.steps; ++i) {
-    const Step step{model, state, workspace, plan.dt, start_time + static_cast<double>(i + 1) * plan.dt};
+    // The last step ends at the very time of the state after it, so that loads evaluated anew there are the same.
+    const double end_time = i + 1 == plan.steps ? plan.end_time : start_time + static_cast<double>(i + 1) * plan.dt;
+    const Step step{model, state, workspace, plan.dt, end_time};
     opening_half(step);
-    const IslandReport motion = check_motion(step, plan);
-    if (motion.stop != StopReason::none) {
-      total.stop = motion.stop;
-      total.stop_body = motion.stop_body;
-      total.stop_node = motion.stop_node;
+    if (!check_finite(step, total) || !check_motion(step, plan, total)) {
       return total;
     }
     contact_forces(step);
     element_forces(step);
     accelerate(step);
     closing_half(step);
+    if (!check_finite(step, total)) {
+      return total;
+    }
 
     total.steps_done = i + 1;
     total.active_pairs = contact_report_.active_pairs;
@@ -124,6 +125,8 @@ void IslandSolver::kick(const Step& step, const Chunk& chunk, Partial& partial) 
     }
     motion.velocity = v;
     motion.rotation_rate = w;
+    const double squares = dot(v, v) + dot(w, w);
+    partial.finite = partial.finite && squares - squares == 0.0;
   }
 }
 
@@ -148,7 +151,6 @@ void IslandSolver::opening_half(const Step& step) {
     const Chunk& chunk = chunks_[at(i)];
     Partial& partial = partials_[at(i)];
     double largest = 0.0;
-    bool finite = true;
     for (Index n = chunk.begin; n < chunk.end; ++n) {
       model::NodeMotion& motion = step.state.motion[at(n)];
       if (!step.workspace.load.empty()) {
@@ -157,12 +159,9 @@ void IslandSolver::opening_half(const Step& step) {
       }
       motion.position += step.dt * motion.velocity;
       const double speed2 = dot(motion.velocity, motion.velocity);
-      const double spin2 = dot(motion.rotation_rate, motion.rotation_rate);
-      finite = finite && (speed2 - speed2 == 0.0) && (spin2 - spin2 == 0.0);
       largest = speed2 > largest ? speed2 : largest;
     }
     partial.largest_speed2 = largest;
-    partial.finite = finite;
   });
 }
 
@@ -180,37 +179,48 @@ void IslandSolver::prescribe(const Step& step, HalfStep half) {
   }
 }
 
-IslandReport IslandSolver::check_motion(const Step& step, const EpochPlan& plan) {
-  IslandReport report;
+/// False, with the lowest node concerned, when a velocity is not finite. A sum that overflows counts as well.
+bool IslandSolver::check_finite(const Step& step, IslandReport& report) const {
+  for (std::size_t c = 0; c < chunks_.size(); ++c) {
+    if (partials_[c].finite) {
+      continue;
+    }
+    const auto is_sound = [&](Index n) {
+      const model::NodeMotion& motion = step.state.motion[at(n)];
+      const double squares = dot(motion.velocity, motion.velocity) + dot(motion.rotation_rate, motion.rotation_rate);
+      return squares - squares == 0.0;
+    };
+    report.stop = StopReason::not_finite;
+    report.stop_body = chunks_[c].body;
+    report.stop_node = chunks_[c].begin;
+    while (report.stop_node + 1 < chunks_[c].end && is_sound(report.stop_node)) {
+      ++report.stop_node;
+    }
+    return false;
+  }
+  return true;
+}
+
+/// False when a body may have left its swept box; otherwise tells contact how far nodes have moved.
+bool IslandSolver::check_motion(const Step& step, const EpochPlan& plan, IslandReport& report) {
   double largest = 0.0;
   std::size_t chunk = 0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     double speed2 = 0.0;
     for (; chunk < chunks_.size() && chunks_[chunk].body == bodies_[b]; ++chunk) {
-      const Partial& partial = partials_[chunk];
-      speed2 = std::max(speed2, partial.largest_speed2);
-      if (!partial.finite && report.stop != StopReason::not_finite) {
-        report.stop = StopReason::not_finite;
-        report.stop_body = bodies_[b];
-        for (Index n = chunks_[chunk].end - 1; n >= chunks_[chunk].begin; --n) {
-          const model::NodeMotion& motion = step.state.motion[at(n)];
-          const double sum = dot(motion.velocity, motion.velocity) + dot(motion.rotation_rate, motion.rotation_rate);
-          report.stop_node = sum - sum == 0.0 ? report.stop_node : n;
-        }
-      }
+      speed2 = std::max(speed2, partials_[chunk].largest_speed2);
     }
     const double way = square_root(speed2) * step.dt;
     largest = std::max(largest, way);
     travelled_[b] += way;
-    if (travelled_[b] > plan.allowance[at(bodies_[b])] && report.stop == StopReason::none) {
+    if (travelled_[b] > plan.allowance[at(bodies_[b])]) {
       report.stop = StopReason::left_swept_box;
       report.stop_body = bodies_[b];
+      return false;
     }
   }
-  if (report.stop == StopReason::none) {
-    contact_.advance(step.model, step.state.motion.data(), largest);
-  }
-  return report;
+  contact_.advance(step.model, step.state.motion.data(), largest);
+  return true;
 }
 
 void IslandSolver::contact_forces(const Step& step) {

@@ -17,6 +17,7 @@ namespace fexp::solve {
 struct EpochPlan {
   double dt{};  ///< [time]
   Index steps{};
+  double end_time{};          ///< Of the last step, as the state's time will be set [time]
   std::int64_t hash_every{};  ///< Record body hashes after every so many steps of the run; 0: never.
   /// How far a body's nodes may move before it leaves its swept box [length], shape [bodies of the model].
   std::span<const double> allowance;
@@ -100,7 +101,8 @@ class IslandSolver {
   void kick(const Step& step, const Chunk& chunk, Partial& partial) const;
   void accelerate_chunk(const Step& step, std::size_t chunk_index);
   void prescribe(const Step& step, HalfStep half);
-  IslandReport check_motion(const Step& step, const EpochPlan& plan);
+  [[nodiscard]] bool check_finite(const Step& step, IslandReport& report) const;
+  [[nodiscard]] bool check_motion(const Step& step, const EpochPlan& plan, IslandReport& report);
   void record_hashes(const Step& step, std::int64_t number, std::vector<HashRecord>& hashes) const;
 
   contact::IslandContact contact_;

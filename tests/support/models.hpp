@@ -31,10 +31,11 @@ class DirectRun {
 
   solve::IslandReport advance(double dt, Index steps) {
     std::vector<solve::HashRecord> hashes;
-    const solve::EpochPlan plan{dt, steps, 0, allowance_};
+    const double end_time = state.time + static_cast<double>(steps) * dt;
+    const solve::EpochPlan plan{dt, steps, end_time, 0, allowance_};
     const solve::IslandReport report = island_.advance(model_, state, workspace, plan, hashes);
     state.step += report.steps_done;
-    state.time += static_cast<double>(report.steps_done) * dt;
+    state.time = report.steps_done == steps ? end_time : state.time + static_cast<double>(report.steps_done) * dt;
     return report;
   }
 

@@ -50,17 +50,17 @@ inline void update_lanes(const ElementKernelArguments& k, Index block_index, Ind
   double* row = k.history + (at(block_index) * model::element_rows * block_lanes + at(first));
   const auto load_row = [row](Index r) { return Access::load(row + at(r) * block_lanes); };
   const auto store_row = [row](Index r, const T& value) { Access::store(value, row + at(r) * block_lanes); };
-  physics::ShellResultants<T> s{load_row(model::row_nxx),
-                                load_row(model::row_nyy),
-                                load_row(model::row_nxy),
-                                load_row(model::row_mxx),
-                                load_row(model::row_myy),
-                                load_row(model::row_mxy),
-                                load_row(model::row_qxz),
-                                load_row(model::row_qyz),
-                                {load_row(model::row_drill_1), load_row(model::row_drill_2),
-                                 load_row(model::row_drill_3)},
-                                load_row(model::row_energy)};
+  physics::ShellResultants<T> s{
+      load_row(model::row_nxx),
+      load_row(model::row_nyy),
+      load_row(model::row_nxy),
+      load_row(model::row_mxx),
+      load_row(model::row_myy),
+      load_row(model::row_mxy),
+      load_row(model::row_qxz),
+      load_row(model::row_qyz),
+      {load_row(model::row_drill_1), load_row(model::row_drill_2), load_row(model::row_drill_3)},
+      load_row(model::row_energy)};
 
   const Vec3<T> a = x[1] - x[0], b = x[2] - x[0];
   const T dt(k.dt), half_dt(0.5 * k.dt);

@@ -21,18 +21,24 @@ model::Plate plate(double side, int cells) {
   return p;
 }
 
-TEST(swept_boxes, a_box_is_that_of_the_nodes_and_the_allowance_and_half_the_thickness) {
+TEST(swept_boxes, a_box_is_that_of_the_nodes_and_the_allowance_and_the_reach_of_contact) {
   auto d = test::description(rubber, 0.02);
   test::add_body(d, "low", plate(1.0, 2));
-  test::add_body(d, "high", plate(2.0, 3)).translate = {0.0, 0.0, 5.0};
+  test::add_body(d, "high", plate(2.0, 2)).translate = {0.0, 0.0, 5.0};
   const model::Model model = test::build(d);
   const std::vector<double> allowance{0.25, 0.5};
   const std::vector<Box> boxes = swept_boxes(model, model::initial_state(model), allowance);
   ASSERT_EQ(boxes.size(), 2U);
-  EXPECT_EQ(boxes[0].low, (Vec3d{-0.26, -0.26, -0.26}));
-  EXPECT_EQ(boxes[0].high, (Vec3d{1.26, 1.26, 0.26}));
-  EXPECT_EQ(boxes[1].low, (Vec3d{-0.51, -0.51, 4.49}));
-  EXPECT_EQ(boxes[1].high, (Vec3d{2.51, 2.51, 5.51}));
+  for (std::size_t b = 0; b < 2; ++b) {
+    double reach = 0.0;
+    for (Index n = model.bodies[b].nodes.begin; n < model.bodies[b].nodes.end; ++n) {
+      reach = std::max(reach, model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)]));
+    }
+    EXPECT_GT(reach, 0.01);
+    const double side = b == 0 ? 1.0 : 2.0, z = b == 0 ? 0.0 : 5.0, grown = allowance[b] + reach;
+    EXPECT_EQ(boxes[b].low, (Vec3d{-grown, -grown, z - grown}));
+    EXPECT_EQ(boxes[b].high, (Vec3d{side + grown, side + grown, z + grown}));
+  }
 }
 
 TEST(swept_boxes, the_allowance_covers_steady_flight_and_barriers_get_none) {
@@ -78,7 +84,11 @@ TEST(swept_boxes, no_node_leaves_its_box_unless_the_guard_trips) {
       island.assign(model, state, std::vector<Index>{0}, {});
       island.evaluate(model, state, workspace);
       const std::vector<double> allowance = travel_allowance(model, state, dt, steps);
-      const Box box = swept_boxes(model, state, allowance)[0].grown(-model.half_thickness[0]);
+      Box box;
+      for (const model::NodeMotion& motion : state.motion) {
+        box.include(motion.position);
+      }
+      box = box.grown(allowance[0]);
       std::vector<solve::HashRecord> hashes;
       const auto report =
           island.advance(model, state, workspace, {dt, n, static_cast<double>(n) * dt, 0, allowance}, hashes);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <string_view>
 
 namespace fexp {
@@ -26,6 +27,9 @@ inline constexpr Range any_number{};
 inline constexpr Range positive{0.0, std::numeric_limits<double>::infinity(), false, true, "> 0"};
 inline constexpr Range non_negative{0.0, std::numeric_limits<double>::infinity(), true, true, ">= 0"};
 
+/// The words a text may be; none: any text.
+using Choices = std::span<const std::string_view>;
+
 enum class Presence { optional, required };
 
 /// One named, documented member of an input structure. The deck's parser, its writer and the manual are generated
@@ -41,10 +45,14 @@ struct Field {
   Value Struct::*member;
   Range range{};
   Presence presence{Presence::optional};
+  Choices choices{};
 
   constexpr Field(std::string_view name_, std::string_view unit_, std::string_view meaning_, Value Struct::*member_,
                   Range range_ = any_number, Presence presence_ = Presence::optional)
       : name(name_), unit(unit_), meaning(meaning_), member(member_), range(range_), presence(presence_) {}
+  constexpr Field(std::string_view name_, std::string_view unit_, std::string_view meaning_, Value Struct::*member_,
+                  Choices choices_, Presence presence_ = Presence::optional)
+      : name(name_), unit(unit_), meaning(meaning_), member(member_), presence(presence_), choices(choices_) {}
 };
 
 }  // namespace fexp

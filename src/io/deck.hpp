@@ -12,6 +12,7 @@
 #include "io/history.hpp"
 #include "model/description.hpp"
 #include "model/mesh.hpp"
+#include "model/model.hpp"
 
 /// The deck: a TOML file that describes a run.
 namespace fexp::io {
@@ -19,11 +20,12 @@ namespace fexp::io {
 /// What to write and how often. Intervals are in time; whatever happens in between, frames and rows stand at their
 /// multiples exactly, and at the start and the end.
 struct OutputSettings {
-  double results_interval{-1.0};     ///< Between frames of the results file [time]; negative: duration / 50
-  double history_interval{-1.0};     ///< Between rows of the histories [time]; negative: duration / 500
-  std::vector<std::string> nodes;    ///< Node sets whose nodes' motions are written
-  std::vector<std::string> bodies;   ///< Bodies whose energies and motions are written
-  int deflate{0};                    ///< Compression of the results file, 0 to 9
+  double results_interval{-1.0};    ///< Between frames of the results file [time]; negative: duration / 50
+  double history_interval{-1.0};    ///< Between rows of the histories [time]; negative: duration / 500
+  std::vector<std::string> nodes;   ///< Node sets whose nodes' motions are written
+  std::vector<std::string> bodies;  ///< Bodies whose energies and motions are written
+  int deflate{0};                   ///< Compression of the results file, 0 to 9
+  Place place;
 
   static constexpr Range deflate_range{0.0, 9.0, true, true, "0 to 9"};
   static constexpr auto fields = std::tuple{
@@ -34,8 +36,7 @@ struct OutputSettings {
       Field{"nodes", "-", "Node sets whose nodes' motions are written as histories.", &OutputSettings::nodes},
       Field{"bodies", "-", "Bodies whose energies, momenta and centres are written as histories.",
             &OutputSettings::bodies},
-      Field{"deflate", "-", "Compression of the results file: 0 (none) to 9.", &OutputSettings::deflate,
-            deflate_range},
+      Field{"deflate", "-", "Compression of the results file: 0 (none) to 9.", &OutputSettings::deflate, deflate_range},
   };
 };
 
@@ -51,9 +52,13 @@ struct Deck {
 [[nodiscard]] Deck parse_deck(std::string_view text, const std::string& file, ErrorList& errors);
 
 /// Generates or reads the mesh of every body, in order; a path is relative to `directory`, that of the deck. A body
-/// whose mesh cannot be had gets an empty one and an error.
+/// whose mesh cannot be had gets an empty one and an error. Models that cannot fit into the machine's memory are
+/// refused before memory is asked for.
 [[nodiscard]] std::vector<model::Mesh> load_meshes(const Deck& deck, const std::filesystem::path& directory,
                                                    ErrorList& errors);
+
+/// Reports node sets and bodies that [output] names and the model, built from the deck, does not have.
+void check_output(const OutputSettings& output, const model::Model& model, ErrorList& errors);
 
 /// The reference of the deck in Markdown, generated from the same fields that the parser reads.
 [[nodiscard]] std::string deck_reference();

@@ -7,9 +7,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <variant>
 #include <vector>
 
+#include "base/field.hpp"
 #include "base/vec3.hpp"
 
 namespace fexp::io {
@@ -21,6 +23,13 @@ struct UnitNames {
   std::string time;
   std::string mass;
   std::string force;
+
+  static constexpr auto fields = std::tuple{
+      Field{"length", "-", "Name of the unit of length, such as \"mm\".", &UnitNames::length},
+      Field{"time", "-", "Name of the unit of time.", &UnitNames::time},
+      Field{"mass", "-", "Name of the unit of mass.", &UnitNames::mass},
+      Field{"force", "-", "Name of the unit of force.", &UnitNames::force},
+  };
 
   /// "force/length^2" -> "kN/mm^2"; the dimension's own words where no name is given; "-" stays.
   [[nodiscard]] std::string of(std::string_view dimension) const;

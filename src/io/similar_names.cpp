@@ -36,7 +36,8 @@ std::vector<std::string> similar_names(std::string_view wanted, std::span<const 
   std::vector<std::pair<std::size_t, std::string>> near;
   for (const std::string& name : known) {
     const std::size_t distance = edit_distance(wanted, name);
-    if (distance <= std::max<std::size_t>(2, wanted.size() / 3)) {
+    // A name of which nothing stays is another one.
+    if (distance <= std::max<std::size_t>(2, wanted.size() / 3) && distance < wanted.size()) {
       near.emplace_back(distance, name);
     }
   }

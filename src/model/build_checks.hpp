@@ -11,9 +11,6 @@
 
 namespace fexp::model {
 
-/// Names of the degrees of freedom, in the order of FixedNode::mask and PrescribedNode::dof.
-inline constexpr std::array<std::string_view, 6> dof_names{"x", "y", "z", "rx", "ry", "rz"};
-
 /// Index of a degree of freedom, or no_index.
 [[nodiscard]] Index dof_index(std::string_view name);
 

@@ -18,6 +18,9 @@
 /// documented fields and the place in the deck it came from.
 namespace fexp::model {
 
+/// Names of the degrees of freedom, in the order of FixedNode::mask and PrescribedNode::dof.
+inline constexpr std::array<std::string_view, 6> dof_names{"x", "y", "z", "rx", "ry", "rz"};
+
 /// Piecewise linear function of time, constant beyond its ends.
 struct Curve {
   std::string name;
@@ -32,10 +35,16 @@ struct Curve {
   };
 };
 
+/// A material law with its parameters; the deck gives them in one table, which names the law's kind as `law`.
 struct Material {
   std::string name;
   physics::AnyMaterial law;
   Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"name", "-", "Name by which sections refer to the material.", &Material::name, any_number,
+            Presence::required},
+  };
 };
 
 struct Section {
@@ -61,9 +70,11 @@ struct MeshFile {
       Field{"path", "-", "Mesh file (.msh, .stl, .obj), relative to the deck.", &MeshFile::path, any_number,
             Presence::required},
       Field{"weld_tolerance", "length", "STL nodes closer than this are one; by default 1e-6 of the box diagonal.",
-            &MeshFile::weld_tolerance},
+            &MeshFile::weld_tolerance, non_negative},
   };
 };
+
+using AnyMesh = std::variant<MeshGenerator, MeshFile>;
 
 struct Rotation {
   Vec3d axis{0.0, 0.0, 1.0};
@@ -105,7 +116,7 @@ struct PartSection {
 /// A set of elements that moves as a connected piece. Placement order: scale, rotations as listed, translate, array.
 struct BodyDescription {
   std::string name;
-  std::variant<MeshGenerator, MeshFile> mesh;
+  AnyMesh mesh;
   std::string section;  ///< Section of all parts that `parts` does not name; may be empty.
   std::vector<PartSection> parts;
   double scale{1.0};
@@ -121,6 +132,8 @@ struct BodyDescription {
   static constexpr auto fields = std::tuple{
       Field{"name", "-", "Name of the body; copies of an array get [i,j,k] appended.", &BodyDescription::name,
             any_number, Presence::required},
+      Field{"mesh", "-", "The mesh: made by a generator or read from a file.", &BodyDescription::mesh, any_number,
+            Presence::required},
       Field{"section", "-", "Section of every part not listed in `parts`.", &BodyDescription::section},
       Field{"parts", "-", "Sections of single parts.", &BodyDescription::parts},
       Field{"scale", "-", "Factor on all coordinates of the mesh.", &BodyDescription::scale, positive},
@@ -173,7 +186,8 @@ struct Fixed {
 
   static constexpr auto fields = std::tuple{
       Field{"set", "-", "Node set.", &Fixed::set, any_number, Presence::required},
-      Field{"dofs", "-", "Which of x, y, z, rx, ry, rz are held; all when left out.", &Fixed::dofs},
+      Field{"dofs", "-", "Which degrees of freedom are held: translations x, y, z, rotations rx, ry, rz.", &Fixed::dofs,
+            Choices(dof_names)},
   };
 };
 
@@ -187,7 +201,8 @@ struct Prescribed {
 
   static constexpr auto fields = std::tuple{
       Field{"set", "-", "Node set.", &Prescribed::set, any_number, Presence::required},
-      Field{"dof", "-", "One of x, y, z, rx, ry, rz.", &Prescribed::dof, any_number, Presence::required},
+      Field{"dof", "-", "The degree of freedom that is moved.", &Prescribed::dof, Choices(dof_names),
+            Presence::required},
       Field{"velocity", "length/time or 1/time", "Velocity, multiplied by the curve.", &Prescribed::velocity,
             any_number, Presence::required},
       Field{"curve", "-", "Factor in time; 1 when left out.", &Prescribed::curve},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -14,6 +15,7 @@ namespace fexp::model {
 
 inline constexpr Range cell_range{1.0, 10000.0, true, true, "1 to 10000"};
 inline constexpr Range ring_range{3.0, 100000.0, true, true, "3 to 100000"};
+inline constexpr std::array<std::string_view, 3> diagonal_names{"one", "alternating", "crossed"};
 inline constexpr Range angle_range{0.0, 360.0, false, true, "> 0 and <= 360"};
 
 /// Sphere projected from a cube: 12 cells^2 triangles, 6 cells^2 + 2 nodes.
@@ -57,8 +59,8 @@ struct Plate {
       Field{"length_y", "length", "Extent along y.", &Plate::length_y, positive, Presence::required},
       Field{"cells_x", "-", "Cells along x.", &Plate::cells_x, cell_range},
       Field{"cells_y", "-", "Cells along y.", &Plate::cells_y, cell_range},
-      Field{"diagonals", "-", "How cells are cut: \"one\" (all the same way), \"alternating\" or \"crossed\".",
-            &Plate::diagonals},
+      Field{"diagonals", "-", "How cells are cut: all the one way, the ways alternating, or crossed into four.",
+            &Plate::diagonals, Choices(diagonal_names)},
   };
 };
 

@@ -11,15 +11,16 @@
 /// element with one-point quadrature, IJNME 20 (1984) 787-802 [BSC84], in rate form in a co-rotated frame.
 ///
 /// Deviations from the paper: strain increments use the geometry at mid-step and forces the geometry at the end of the
-/// step (the first keeps rigid rotation free of strain, the second conserves angular momentum); a drilling tie and an
-/// isotropic scaled rotary inertia are added. docs/theory.md derives all of it.
+/// step (the first keeps rigid rotation free of strain, the second conserves angular momentum); resultants turn with
+/// the material, not with the side the frame is tied to, so that results do not depend on which corner comes first; a
+/// drilling tie and an isotropic scaled rotary inertia are added. docs/theory.md derives all of it.
 namespace fexp::physics {
 
 /// What a shell section means to the element.
 struct ShellSection {
-  double thickness{};        ///< t [length]
+  double thickness{};  ///< t [length]
   PlaneStressModuli moduli{};
-  double drilling{};         ///< Drilling factor beta [-]
+  double drilling{};  ///< Drilling factor beta [-]
 
   static constexpr double shear_factor = 5.0 / 6.0;
 };
@@ -28,7 +29,8 @@ struct ShellSection {
 template <class T>
 struct TriangleFrame {
   Vec3<T> e1, e2, e3;
-  T x2, x3, y3;
+  T x2, x3, y3;                          // [length]
+  T inverse_side, inverse_doubled_area;  // 1/x2, 1/(x2 y3)
 
   [[nodiscard]] T doubled_area() const noexcept { return x2 * y3; }
 };
@@ -37,11 +39,11 @@ struct TriangleFrame {
 template <class T>
 [[nodiscard]] inline TriangleFrame<T> triangle_frame(const Vec3<T>& a, const Vec3<T>& b) noexcept {
   const Vec3<T> n = cross(a, b);
-  const T inverse_side = T(1.0) / square_root(dot(a, a));
-  const T inverse_normal = T(1.0) / square_root(dot(n, n));
   TriangleFrame<T> frame;
-  frame.e1 = inverse_side * a;
-  frame.e3 = inverse_normal * n;
+  frame.inverse_side = T(1.0) / square_root(dot(a, a));
+  frame.inverse_doubled_area = T(1.0) / square_root(dot(n, n));
+  frame.e1 = frame.inverse_side * a;
+  frame.e3 = frame.inverse_doubled_area * n;
   frame.e2 = cross(frame.e3, frame.e1);
   frame.x2 = dot(a, frame.e1);
   frame.x3 = dot(b, frame.e1);
@@ -55,9 +57,7 @@ struct ShapeDerivatives {
   T b2, c2, c3;  // [1/length]
 
   explicit ShapeDerivatives(const TriangleFrame<T>& f) noexcept
-      : b2(T(1.0) / f.x2), c2(), c3(T(1.0) / f.y3) {
-    c2 = -(f.x3 * b2) * c3;
-  }
+      : b2(f.inverse_side), c2(-(f.x3 * f.inverse_doubled_area)), c3(f.x2 * f.inverse_doubled_area) {}
 };
 
 /// Rows of 12 A Bs, the assumed transverse shear of [BSC84] as it acts on (thx1, thy1, thx2, thy2, thx3, thy3); the
@@ -70,8 +70,12 @@ struct ShearRows {
     const T y33 = f.y3 * f.y3;
     const T x2y3 = f.x2 * f.y3;
     xz = {-y33, f.y3 * (f.x2 + f.x2 + f.x3), y33, f.y3 * (T(3.0) * f.x2 - f.x3), T(0.0), x2y3};
-    yz = {f.y3 * (f.x3 - f.x2 - f.x2), f.x2 * f.x2 - f.x3 * f.x3, -(f.y3 * (f.x2 + f.x3)),
-          f.x3 * (f.x3 - f.x2 - f.x2), T(-3.0) * x2y3,            f.x2 * (f.x3 + f.x3 - f.x2)};
+    yz = {f.y3 * (f.x3 - f.x2 - f.x2),
+          f.x2 * f.x2 - f.x3 * f.x3,
+          -(f.y3 * (f.x2 + f.x3)),
+          f.x3 * (f.x3 - f.x2 - f.x2),
+          T(-3.0) * x2y3,
+          f.x2 * (f.x3 + f.x3 - f.x2)};
   }
 };
 
@@ -87,12 +91,21 @@ struct ShellIncrement {
 /// Resultants and drilling rotations, accumulated in the co-rotated frame, and the internal energy.
 template <class T>
 struct ShellResultants {
-  T nxx, nyy, nxy;           ///< [force/length]
-  T mxx, myy, mxy;           ///< [force]
-  T qxz, qyz;                ///< [force/length]
-  std::array<T, 3> drill;    ///< [-]
-  T energy;                  ///< [force*length]
+  T nxx, nyy, nxy;         ///< [force/length]
+  T mxx, myy, mxy;         ///< [force]
+  T qxz, qyz;              ///< [force/length]
+  std::array<T, 3> drill;  ///< [-]
+  T energy;                ///< [force*length]
 };
+
+/// Components of a strain (engineering shear xy) in a frame turned forwards by a small angle.
+template <class T>
+inline void turn_strain(const T& angle, T& xx, T& yy, T& xy) noexcept {
+  const T change = angle * xy;
+  xy = xy - (angle + angle) * (xx - yy);
+  xx = xx + change;
+  yy = yy - change;
+}
 
 /// Strain increments dt x rate for corner velocities v and rotation rates w, in the frame of the mid-step geometry.
 template <class T>
@@ -123,13 +136,24 @@ template <class T>
   e.kyy = -(d.c2 * tx2 + d.c3 * tx3);
   e.kxy = (d.c2 * ty2 + d.c3 * ty3) - d.b2 * tx2;
 
-  const T inverse_12a = T(1.0 / 6.0) * d.b2 * d.c3;
-  const T row_xz = shear.xz[0] * tx[0] + shear.xz[1] * ty[0] + shear.xz[2] * tx[1] + shear.xz[3] * ty[1] +
-                   shear.xz[5] * ty[2];
+  const T inverse_12a = T(1.0 / 6.0) * f.inverse_doubled_area;
+  const T row_xz =
+      shear.xz[0] * tx[0] + shear.xz[1] * ty[0] + shear.xz[2] * tx[1] + shear.xz[3] * ty[1] + shear.xz[5] * ty[2];
   const T row_yz = shear.yz[0] * tx[0] + shear.yz[1] * ty[0] + shear.yz[2] * tx[1] + shear.yz[3] * ty[1] +
                    shear.yz[4] * tx[2] + shear.yz[5] * ty[2];
-  e.gxz = d.b2 * w2 + inverse_12a * row_xz;
-  e.gyz = (d.c2 * w2 + d.c3 * w3) + inverse_12a * row_yz;
+  const T w_x = d.b2 * w2;
+  const T w_y = d.c2 * w2 + d.c3 * w3;
+  e.gxz = w_x + inverse_12a * row_xz;
+  e.gyz = w_y + inverse_12a * row_yz;
+
+  // Corners move along chords, so that the mid-step triangle is smaller than those at either end by an eighth of the
+  // square of the turn, and side 1-2 lies in it turned back by `chord` from their mean.
+  const T chord = T(0.125) * ((e.exx * u_y + v_x * e.eyy) + w_x * w_y);
+  turn_strain(chord, e.exx, e.eyy, e.gxy);
+  turn_strain(chord, e.kxx, e.kyy, e.kxy);
+  const T gxz = e.gxz;
+  e.gxz = gxz + chord * e.gyz;
+  e.gyz = e.gyz - chord * gxz;
 
   const T spin = T(0.5) * (v_x - u_y);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -144,31 +168,78 @@ template <class T>
   return T(s.drilling * s.moduli.shear * s.thickness / 3.0) * minimum(area, T(s.thickness * s.thickness));
 }
 
-/// Linear elastic update S += C de and of the energy by the mean of old and new resultants over the area.
+/// The in-plane turn of one step that carries resultants from side 1-2, to which the frame is tied, to the material:
+/// the frame turns by v,x, the material by (v,x - u,y)/2, so that resultants turn by -gxy/2 in the frame. It is taken
+/// about the mean of old and new, S(n+1) - S(n) = dS + phi J (S(n) + S(n+1))/2, which keeps their length and can be run
+/// backwards. All corrections are exactly zero where gxy is.
+template <class T>
+struct MaterialTurn {
+  T phi, half;                   // phi = gxy/2 and phi/2 [-]
+  T tensor_scale, vector_scale;  // 1/(1 + phi^2) and 1/(1 + phi^2/4)
+
+  explicit MaterialTurn(const T& gxy) noexcept
+      : phi(T(0.5) * gxy), half(T(0.25) * gxy), tensor_scale(), vector_scale() {
+    const T tensor = T(1.0) + phi * phi, vector = T(1.0) + half * half;
+    const T inverse = T(1.0) / (tensor * vector);
+    tensor_scale = inverse * vector;
+    vector_scale = inverse * tensor;
+  }
+
+  /// Turns the components of a mean plane tensor; returns twice the change of xx and of xy, which the new tensor gets.
+  [[nodiscard]] std::array<T, 2> turn_tensor(T& xx, T& yy, T& xy) const noexcept {
+    const T difference = T(0.5) * (xx - yy);
+    const T change = phi * (tensor_scale * (xy - phi * difference));
+    const T shear = -(phi * (difference + change));
+    xx = xx + change;
+    yy = yy - change;
+    xy = xy + shear;
+    return {change + change, shear + shear};
+  }
+
+  /// The same for a vector: changes of x and of y.
+  [[nodiscard]] std::array<T, 2> turn_vector(T& x, T& y) const noexcept {
+    const T change_x = half * (vector_scale * (y - half * x));
+    const T change_y = -(half * (x + change_x));
+    x = x + change_x;
+    y = y + change_y;
+    return {change_x + change_x, change_y + change_y};
+  }
+};
+
+/// Linear elastic update S += C de of resultants that turn with the material, and of the energy by the mean of old and
+/// new resultants over the area.
 template <class T>
 inline void update_elastic(const ShellSection& s, const T& area, const ShellIncrement<T>& e,
                            ShellResultants<T>& r) noexcept {
   const double t = s.thickness;
   const double bend = t * t * t / 12.0;
-  const T cm(t * s.moduli.direct), cx(t * s.moduli.cross), cg(t * s.moduli.shear);
-  const T bm(bend * s.moduli.direct), bx(bend * s.moduli.cross), bg(bend * s.moduli.shear);
   const T cs(ShellSection::shear_factor * t * s.moduli.shear);
   const T kd = drilling_stiffness(s, area);
+  const MaterialTurn<T> turn(e.gxy);
 
   T density(0.0);
-  const auto add = [&density](T& resultant, const T& increment, const T& strain) {
-    const T half = T(0.5) * increment;
-    density = density + (resultant + half) * strain;
-    resultant = resultant + increment;
+  const auto add_tensor = [&](double factor, const std::array<T, 3>& strain, T& xx, T& yy, T& xy) {
+    const T direct(factor * s.moduli.direct), cross(factor * s.moduli.cross), shear(factor * s.moduli.shear);
+    const T dxx = direct * strain[0] + cross * strain[1];
+    const T dyy = cross * strain[0] + direct * strain[1];
+    const T dxy = shear * strain[2];
+    T mean_xx = xx + T(0.5) * dxx, mean_yy = yy + T(0.5) * dyy, mean_xy = xy + T(0.5) * dxy;
+    const auto [turned, sheared] = turn.turn_tensor(mean_xx, mean_yy, mean_xy);
+    density = density + (mean_xx * strain[0] + mean_yy * strain[1] + mean_xy * strain[2]);
+    xx = xx + (dxx + turned);
+    yy = yy + (dyy - turned);
+    xy = xy + (dxy + sheared);
   };
-  add(r.nxx, cm * e.exx + cx * e.eyy, e.exx);
-  add(r.nyy, cx * e.exx + cm * e.eyy, e.eyy);
-  add(r.nxy, cg * e.gxy, e.gxy);
-  add(r.mxx, bm * e.kxx + bx * e.kyy, e.kxx);
-  add(r.myy, bx * e.kxx + bm * e.kyy, e.kyy);
-  add(r.mxy, bg * e.kxy, e.kxy);
-  add(r.qxz, cs * e.gxz, e.gxz);
-  add(r.qyz, cs * e.gyz, e.gyz);
+  add_tensor(t, {e.exx, e.eyy, e.gxy}, r.nxx, r.nyy, r.nxy);
+  add_tensor(bend, {e.kxx, e.kyy, e.kxy}, r.mxx, r.myy, r.mxy);
+
+  const T dqx = cs * e.gxz, dqy = cs * e.gyz;
+  T mean_x = r.qxz + T(0.5) * dqx, mean_y = r.qyz + T(0.5) * dqy;
+  const auto [turned_x, turned_y] = turn.turn_vector(mean_x, mean_y);
+  density = density + (mean_x * e.gxz + mean_y * e.gyz);
+  r.qxz = r.qxz + (dqx + turned_x);
+  r.qyz = r.qyz + (dqy + turned_y);
+
   T drill(0.0);
   for (std::size_t i = 0; i < 3; ++i) {
     drill = drill + (r.drill[i] + T(0.5) * e.drill[i]) * e.drill[i];

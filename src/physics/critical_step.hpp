@@ -37,7 +37,7 @@ namespace fexp::physics {
 
 /// Upper bound of the squared highest frequency of a free element [1/time^2]: the larger of membrane plus drilling tie,
 /// and bending plus transverse shear. It equals the exact eigenvalue of the 18 degrees of freedom for thin elements and
-/// exceeds its root by less than 2 % up to t = 0.3 sqrt(A).
+/// exceeds its root by less than 3 % up to t = 0.3 sqrt(A), whatever the shape.
 [[nodiscard]] inline double element_frequency_bound(const ShellSection& s, double density,
                                                     const TriangleFrame<double>& f) noexcept {
   const double area = 0.5 * f.doubled_area();
@@ -65,8 +65,8 @@ namespace fexp::physics {
   yy = cc + scale * yy;
   xy = bc + scale * xy;
   const double mean = 0.5 * (xx + yy), half = 0.5 * (xx - yy);
-  const double shear = 3.0 / density * ShellSection::shear_factor * s.moduli.shear *
-                       (mean + square_root(half * half + xy * xy));
+  const double shear =
+      3.0 / density * ShellSection::shear_factor * s.moduli.shear * (mean + square_root(half * half + xy * xy));
   const double bending = membrane * (t2 / 12.0) / radius2;
   return std::max(membrane + drill, bending + shear);
 }

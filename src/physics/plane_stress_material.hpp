@@ -20,7 +20,8 @@ template <class M>
 concept PlaneStressMaterial = std::is_trivially_copyable_v<M> && requires(const M m) {
   { M::kind } -> std::convertible_to<std::string_view>;
   { m.density } -> std::convertible_to<double>;
-  { m.moduli() } noexcept -> std::same_as<PlaneStressModuli>;
+  { m.moduli() }
+  noexcept->std::same_as<PlaneStressModuli>;
   M::fields;
 };
 

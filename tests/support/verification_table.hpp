@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 
 /// One table over all verification tests: each row is printed, checked and, when FEXP_VERIFICATION_ROWS names a file,
@@ -15,13 +16,13 @@
 namespace fexp::test {
 
 struct VerificationRow {
-  std::string number;     ///< Number of the case in docs/verification.md
+  std::string number;  ///< Number of the case in docs/verification.md
   std::string title;
   std::string quantity;
   double reference{};
   double result{};
-  double tolerance{};     ///< Largest accepted error
-  bool relative{true};    ///< Error relative to the reference, else absolute
+  double tolerance{};   ///< Largest accepted error
+  bool relative{true};  ///< Error relative to the reference, else absolute
   std::string source;
 };
 
@@ -34,13 +35,9 @@ inline void verify(const VerificationRow& row) {
               row.source.c_str());
   EXPECT_LE(error, row.tolerance) << row.title << ": " << row.quantity;
   if (const char* path = std::getenv("FEXP_VERIFICATION_ROWS")) {
-    if (std::FILE* file = std::fopen(path, "a")) {
-      const std::string line =
-          fmt::format("{}\t{}\t{}\t{:.9g}\t{:.9g}\t{:.2e}\t{:.1e}\t{}\n", row.number, row.title, row.quantity,
-                      row.reference, row.result, error, row.tolerance, row.source);
-      std::fputs(line.c_str(), file);
-      std::fclose(file);
-    }
+    std::ofstream(path, std::ios::app) << fmt::format("{}\t{}\t{}\t{:.9g}\t{:.9g}\t{:.2e}\t{:.1e}\t{}\n", row.number,
+                                                      row.title, row.quantity, row.reference, row.result, error,
+                                                      row.tolerance, row.source);
   }
 }
 

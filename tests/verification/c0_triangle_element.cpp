@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "physics/c0_triangle.hpp"
@@ -46,9 +47,13 @@ struct PatchResult {
   double largest_force{};
 };
 
-/// Resultants and nodal forces for small velocities and rotation rates over a unit step, given in the patch's own axes,
-/// with the patch turned by `turn` (half Cayley vector).
-PatchResult load_patch(const Patch& patch, const std::vector<Vec3d>& v, const std::vector<Vec3d>& w, const Vec3d& turn) {
+/// A step so short that nothing turns or stretches: what accumulates in it, divided by it, is linear in the rates.
+constexpr double short_step = 0x1p-60;
+
+/// Rates of resultants and nodal forces for velocities and rotation rates given in the patch's own axes, with the patch
+/// turned by `turn` (half Cayley vector).
+PatchResult load_patch(const Patch& patch, const std::vector<Vec3d>& v, const std::vector<Vec3d>& w,
+                       const Vec3d& turn) {
   PatchResult result;
   result.force.resize(patch.x.size());
   result.moment.resize(patch.x.size());
@@ -61,8 +66,12 @@ PatchResult load_patch(const Patch& patch, const std::vector<Vec3d>& v, const st
     }
     const auto frame = frame_of(x);
     ShellResultants<double> s{};
-    const auto e = fexp::physics::strain_increment(frame, vt, wt, 1.0);
+    const auto e = fexp::physics::strain_increment(frame, vt, wt, short_step);
     fexp::physics::update_elastic(patch.section, 0.5 * frame.doubled_area(), e, s);
+    for (double* value :
+         {&s.nxx, &s.nyy, &s.nxy, &s.mxx, &s.myy, &s.mxy, &s.qxz, &s.qyz, &s.drill[0], &s.drill[1], &s.drill[2]}) {
+      *value /= short_step;
+    }
     Corners f, m;
     fexp::physics::corner_forces(patch.section, frame, s, f, m);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -133,7 +142,7 @@ TEST(c0_triangle, bending_patch_has_constant_moments_and_no_shear) {
     }
     const PatchResult r = load_patch(patch, v, w, turn);
     const double m_reference = 1e6 * 1e-9 / 12 / (1 - 0.0625) * 1e-3 * 1.25;  // D (1 + nu) 1e-3
-    const double mxy_reference = m_reference / 1.25 * 0.375;                 // D (1 - nu)/2 1e-3
+    const double mxy_reference = m_reference / 1.25 * 0.375;                  // D (1 - nu)/2 1e-3
     double mxx = 0, myy = 0, mxy = 0, shear = 0, residual = 0;
     for (std::size_t t = 0; t < r.resultants.size(); ++t) {
       const auto& s = r.resultants[t];
@@ -150,10 +159,10 @@ TEST(c0_triangle, bending_patch_has_constant_moments_and_no_shear) {
     const std::string title = turn == turns[0] ? "bending patch, flat" : "bending patch, turned";
     verify({"2", title, "|Mxx| (worst element)", 1.1111111111111111e-7, m_reference + mxx, 1e-10, true, "closed form"});
     verify({"2", title, "|Myy| (worst element)", 1.1111111111111111e-7, m_reference + myy, 1e-10, true, "closed form"});
-    verify({"2", title, "|Mxy| (worst element)", 3.3333333333333333e-8, mxy_reference + mxy, 1e-10, true,
-            "closed form"});
-    verify({"2", title, "Q over 5/6 G t 1e-3", 0, shear / (5.0 / 6.0 * 4e5 * 1e-3 * 1e-3), 1e-10, false,
-            "closed form"});
+    verify(
+        {"2", title, "|Mxy| (worst element)", 3.3333333333333333e-8, mxy_reference + mxy, 1e-10, true, "closed form"});
+    verify(
+        {"2", title, "Q over 5/6 G t 1e-3", 0, shear / (5.0 / 6.0 * 4e5 * 1e-3 * 1e-3), 1e-10, false, "closed form"});
     verify({"2", title, "interior residual / M", 0, residual, 1e-10, false, "equilibrium"});
   }
 }
@@ -172,15 +181,15 @@ TEST(c0_triangle, constant_transverse_shear_is_exact) {
     qx = std::max(qx, std::abs(s.qxz * c - s.qyz * sn - 1.0 / 3.0));
     qy = std::max(qy, std::abs(s.qxz * sn + s.qyz * c - 2.0 / 3.0));
   }
-  verify({"3", "constant transverse shear", "Qx (worst element)", 1.0 / 3.0, 1.0 / 3.0 + qx, 1e-12, true,
-          "closed form"});
-  verify({"3", "constant transverse shear", "Qy (worst element)", 2.0 / 3.0, 2.0 / 3.0 + qy, 1e-12, true,
-          "closed form"});
+  verify(
+      {"3", "constant transverse shear", "Qx (worst element)", 1.0 / 3.0, 1.0 / 3.0 + qx, 1e-12, true, "closed form"});
+  verify(
+      {"3", "constant transverse shear", "Qy (worst element)", 2.0 / 3.0, 2.0 / 3.0 + qy, 1e-12, true, "closed form"});
 }
 
 using Matrix18 = std::array<std::array<double, 18>, 18>;
 
-/// Stiffness of one element, column by column from unit velocities, scaled so that moments and forces compare.
+/// Stiffness of one element, column by column from unit velocities.
 Matrix18 element_stiffness(const ShellSection& section, const Corners& x) {
   const auto frame = frame_of(x);
   Matrix18 k{};
@@ -190,13 +199,13 @@ Matrix18 element_stiffness(const ShellSection& section, const Corners& x) {
     (j % 3 == 0 ? target.x : j % 3 == 1 ? target.y : target.z) = 1.0;
     ShellResultants<double> s{};
     fexp::physics::update_elastic(section, 0.5 * frame.doubled_area(),
-                                  fexp::physics::strain_increment(frame, v, w, 1.0), s);
+                                  fexp::physics::strain_increment(frame, v, w, short_step), s);
     Corners f, m;
     fexp::physics::corner_forces(section, frame, s, f, m);
     for (std::size_t c = 0; c < 3; ++c) {
       const std::array<double, 6> column{f[c].x, f[c].y, f[c].z, m[c].x, m[c].y, m[c].z};
       for (std::size_t d = 0; d < 6; ++d) {
-        k[6 * c + d][j] = column[d];
+        k[6 * c + d][j] = column[d] / short_step;
       }
     }
   }
@@ -240,9 +249,8 @@ TEST(c0_triangle, one_element_has_the_right_number_of_zero_modes) {
   for (const auto& [drilling, expected] : {std::pair{0.0, 10.0}, std::pair{0.3, 7.0}}) {
     const ShellSection section{0.5, fexp::physics::LinearElastic{1.0, 1.0, 0.3}.moduli(), drilling};
     const auto values = eigenvalues(element_stiffness(section, x));
-    const double zero =
-        static_cast<double>(std::count_if(values.begin(), values.end(),
-                                          [&](double v) { return std::abs(v) < 1e-12 * values.back(); }));
+    const auto zero = static_cast<double>(
+        std::count_if(values.begin(), values.end(), [&](double v) { return std::abs(v) < 1e-12 * values.back(); }));
     verify({"4", "one element", drilling > 0 ? "zero modes with drilling tie" : "zero modes", expected, zero, 0, true,
             "rank of B"});
   }
@@ -265,6 +273,58 @@ TEST(c0_triangle, stiffness_is_symmetric_and_does_not_depend_on_the_first_corner
   }
   verify({"4", "one element", "asymmetry of K / largest entry", 0, asymmetry / largest, 1e-15, false, "exact"});
   verify({"4", "one element", "change of K by renumbering", 0, change / largest, 1e-15, false, "exact"});
+}
+
+/// Critical step 2/omega of one free element from all 18 degrees of freedom.
+double exact_critical_step(const ShellSection& section, double density, const Corners& x) {
+  Matrix18 k = element_stiffness(section, x);
+  const double area = 0.5 * frame_of(x).doubled_area();
+  const double mass = fexp::physics::corner_mass(density, section.thickness, area);
+  const double inertia = fexp::physics::corner_inertia(mass, section.thickness, area);
+  for (std::size_t i = 0; i < 18; ++i) {
+    for (std::size_t j = 0; j < 18; ++j) {
+      k[i][j] /= std::sqrt((i % 6 < 3 ? mass : inertia) * (j % 6 < 3 ? mass : inertia));
+    }
+  }
+  return 2.0 / std::sqrt(eigenvalues(k).back());
+}
+
+TEST(critical_step, of_a_thin_right_isosceles_triangle_is_the_exact_one) {
+  const auto moduli = fexp::physics::LinearElastic{1.0, 1.0, 0.0}.moduli();
+  // b_i and c_i of a triangle with legs 1: (-1, 1, 0) and (-1, 0, 1).
+  const double membrane = 2.0 / std::sqrt(3.0 * fexp::physics::membrane_eigenvalue(moduli, 2.0, 2.0, 1.0));
+  verify({"9", "right isosceles triangle, leg 1", "membrane step c / leg", 2.0 / 3.0, membrane, 1e-12, true,
+          "closed form"});
+  const Corners x{Vec3d{0, 0, 0}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}};
+  for (const double thickness : {0.001, 0.01}) {
+    const ShellSection section{thickness, moduli, 0.1};
+    verify({"9", "right isosceles triangle, leg 1", fmt::format("step c / leg, t = {}", thickness),
+            exact_critical_step(section, 1.0, x), fexp::physics::element_critical_step(section, 1.0, frame_of(x)), 1e-4,
+            true, "18 degrees of freedom"});
+  }
+}
+
+TEST(critical_step, is_safe_and_close_for_triangles_of_any_shape) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  double boldest = 0.0, shyest = 1.0;
+  for (int i = 0; i < 2000; ++i) {
+    Corners x;
+    for (Vec3d& corner : x) {
+      corner = {unit(random), unit(random), unit(random)};
+    }
+    const double side = std::sqrt(0.5 * frame_of(x).doubled_area());
+    const double thickness = 0.3 * side * std::pow(10.0, -1.5 * (1.0 + unit(random)));
+    const fexp::physics::LinearElastic law{1.0, 1.0, 0.24 + 0.24 * unit(random)};
+    const ShellSection section{thickness, law.moduli(), 0.5 * (1.0 + unit(random))};
+    const double ratio = fexp::physics::element_critical_step(section, law.density, frame_of(x)) /
+                         exact_critical_step(section, law.density, x);
+    boldest = std::max(boldest, ratio);
+    shyest = std::min(shyest, ratio);
+  }
+  EXPECT_LE(boldest, 1.0 + 1e-12);
+  verify(
+      {"9", "2000 random triangles", "smallest bound / exact step", 1.0, shyest, 0.03, true, "18 degrees of freedom"});
 }
 
 TEST(c0_triangle, finite_rigid_rotation_in_one_step_gives_no_strain) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/trigonometry.hpp"
 #include "model/build_checks.hpp"
 #include "model/topology.hpp"
 
@@ -26,8 +27,8 @@ class Rotator {
       cosine_ = angle == 0.0 ? 1.0 : std::abs(angle) == 180.0 ? -1.0 : 0.0;
       sine_ = angle == 90.0 ? 1.0 : angle == -90.0 ? -1.0 : 0.0;
     } else {
-      cosine_ = std::cos(angle * std::numbers::pi / 180.0);
-      sine_ = std::sin(angle * std::numbers::pi / 180.0);
+      cosine_ = cosine(angle * std::numbers::pi / 180.0);
+      sine_ = sine(angle * std::numbers::pi / 180.0);
     }
   }
 

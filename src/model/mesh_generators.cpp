@@ -6,6 +6,8 @@
 #include <map>
 #include <numbers>
 
+#include "base/trigonometry.hpp"
+
 namespace fexp::model {
 
 namespace {
@@ -62,7 +64,7 @@ Mesh make(const CubedSphere& s) {
   const int n = s.cells;
   // Equal angles along the cube's edges keep the cells on the sphere even. The whole number 2 i - n changes its sign
   // alone from one side to the other, so mirrored nodes are mirrored to the last bit.
-  const auto coordinate = [n](int i) { return std::tan(std::numbers::pi / 4.0 * (2 * i - n) / n); };
+  const auto coordinate = [n](int i) { return tangent(std::numbers::pi / 4.0 * (2 * i - n) / n); };
   const auto node = [&](const CubeSide& side, int i, int j) {
     std::array<int, 3> p{};
     for (std::size_t d = 0; d < 3; ++d) {
@@ -89,9 +91,9 @@ Mesh make(const UvSphere& s) {
     const double polar = std::numbers::pi * ring / s.rings;
     const double azimuth = 2.0 * std::numbers::pi * segment / s.segments;
     const bool pole = ring == 0 || ring == s.rings;
-    const double r = pole ? 0.0 : s.radius * std::sin(polar);
-    const double z = pole ? (ring == 0 ? s.radius : -s.radius) : s.radius * std::cos(polar);
-    return mesh.node({ring, pole ? 0 : segment % s.segments, 0}, {r * std::cos(azimuth), r * std::sin(azimuth), z});
+    const double r = pole ? 0.0 : s.radius * sine(polar);
+    const double z = pole ? (ring == 0 ? s.radius : -s.radius) : s.radius * cosine(polar);
+    return mesh.node({ring, pole ? 0 : segment % s.segments, 0}, {r * cosine(azimuth), r * sine(azimuth), z});
   };
   for (int ring = 0; ring < s.rings; ++ring) {
     for (int k = 0; k < s.segments; ++k) {
@@ -138,7 +140,7 @@ Mesh make(const Cylinder& c) {
   const auto node = [&](int i, int k) {
     const double angle = c.angle_degrees * std::numbers::pi / 180.0 * i / c.cells_around;
     return mesh.node({closed ? i % c.cells_around : i, k, 0},
-                     {c.radius * std::cos(angle), c.radius * std::sin(angle), c.length * k / c.cells_along});
+                     {c.radius * cosine(angle), c.radius * sine(angle), c.length * k / c.cells_along});
   };
   for (int k = 0; k < c.cells_along; ++k) {
     for (int i = 0; i < c.cells_around; ++i) {

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "app/load.hpp"
+#include "cluster/simulation.hpp"
+#include "io/history.hpp"
+#include "io/run_directory.hpp"
+
+namespace fexp::app {
+
+/// The run's CSV files: energies, momenta and steps of the whole model, and where the deck asks for them forces of
+/// rigid planes, motions of nodes and of bodies. Every row begins with step and time.
+class Histories {
+ public:
+  Histories(const io::RunDirectory& directory, const Case& loaded);
+
+  /// Takes note of what an epoch did; the next row of steps.csv tells of all epochs since the row before.
+  void add(const cluster::EpochReport& report);
+  /// One row (or one for each node and body) of the present state in every file.
+  void write(const cluster::Simulation& simulation, const cluster::EpochReport& report);
+  void flush();
+  void close();
+
+ private:
+  void write_energies(const cluster::Simulation& simulation, const cluster::EpochReport& report);
+  void write_momenta(const cluster::Simulation& simulation, const cluster::EpochReport& report);
+  void write_steps(const cluster::Simulation& simulation, const cluster::EpochReport& report);
+  void write_planes(const cluster::Simulation& simulation);
+  void write_nodes(const cluster::Simulation& simulation);
+  void write_bodies(const cluster::Simulation& simulation);
+  [[nodiscard]] std::vector<io::CsvWriter*> files();
+
+  const model::Model& model_;
+  io::CsvWriter energies_;
+  io::CsvWriter momenta_;
+  io::CsvWriter steps_;
+  std::optional<io::CsvWriter> planes_;
+  std::optional<io::CsvWriter> nodes_;
+  std::optional<io::CsvWriter> bodies_;
+  std::vector<const model::NamedNodes*> sets_;  ///< Whose nodes are written
+  std::vector<Index> chosen_;                   ///< Bodies that are written, ascending
+  // Since the last row of steps.csv.
+  std::int64_t searches_{};
+  std::int64_t rollbacks_{};
+  double deepest_{};
+};
+
+}  // namespace fexp::app

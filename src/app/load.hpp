@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "io/deck.hpp"
+#include "model/model.hpp"
+
+namespace fexp::app {
+
+/// A deck with all that comes of it before the first step.
+struct Case {
+  std::string deck_bytes;  ///< As read
+  io::Deck deck;           ///< Output intervals filled in
+  model::Model model;
+};
+
+/// Reads a deck and its meshes and builds the model. Writes nothing. Throws InputErrors with everything that is wrong.
+[[nodiscard]] Case load_case(const std::filesystem::path& path);
+
+}  // namespace fexp::app

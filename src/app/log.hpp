@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+namespace fexp::app {
+
+/// log.txt of a run: one line for each event, with date and time. Failures throw OutputError.
+class Log {
+ public:
+  explicit Log(std::filesystem::path path);
+  /// Reaches the file at once.
+  void line(std::string_view text);
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const noexcept { static_cast<void>(std::fclose(file)); }
+  };
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, Close> file_;
+};
+
+}  // namespace fexp::app

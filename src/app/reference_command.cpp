@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "app/command.hpp"
+#include "io/deck.hpp"
+
+namespace fexp::app {
+
+namespace {
+
+std::function<ExitCode()> declare(CLI::App&) {
+  return [] {
+    fmt::print("{}", io::deck_reference());
+    return ExitCode::done;
+  };
+}
+
+}  // namespace
+
+const Command reference_command{"reference", "Print the reference of the deck (Markdown)", "  fexp reference | less",
+                                declare};
+
+}  // namespace fexp::app

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/run_output.hpp"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <functional>
+
+namespace fexp::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+/// What a kill can take from the histories at most.
+constexpr auto flush_after = 1s;
+
+}  // namespace
+
+RunOutput::RunOutput(const io::RunDirectory& directory, const Case& loaded, std::int64_t expected_frames, bool hashes)
+    : loaded_(loaded),
+      log_(directory.log()),
+      results_(directory.results(), loaded.model,
+               {.title = loaded.deck.title, .expected_frames = expected_frames, .deflate = loaded.deck.output.deflate}),
+      xdmf_(directory.xdmf(), io::RunDirectory::results_name, loaded.model),
+      histories_(directory, loaded) {
+  if (hashes) {
+    hashes_.emplace(directory.hashes());
+  }
+}
+
+void RunOutput::epoch(const cluster::EpochReport& report) {
+  histories_.add(report);
+  if (hashes_) {
+    for (const solve::HashRecord& record : report.hashes) {
+      hashes_->append({record.step, record.body, record.hash});
+    }
+  }
+  if (report.rollbacks > 0) {
+    log_.line(fmt::format("an epoch was put back and redone {} times, the last time with {} steps of {:.4g}",
+                          report.rollbacks, report.steps, report.dt));
+  }
+  if (std::chrono::steady_clock::now() - flushed_ >= flush_after) {
+    flush();
+  }
+}
+
+void RunOutput::frame(const cluster::Simulation& simulation, const cluster::EpochReport& report) {
+  const model::State& state = simulation.state();
+  if (state.step == frame_step_) {
+    return;
+  }
+  frame_step_ = state.step;
+  model::capture_into(loaded_.model, state, simulation.workspace().contact_force, simulation.island_of_body(), frame_);
+  results_.append(frame_);
+  xdmf_.append(state.time);
+  log_.line(fmt::format("frame {}: time {:.6g}, step {}, dt {:.4g}, energy error {:.2e}, {} islands, {} contacts",
+                        results_.frames() - 1, state.time, state.step, report.dt, report.energy_error, report.islands,
+                        report.active_pairs));
+  flush();
+}
+
+void RunOutput::row(const cluster::Simulation& simulation, const cluster::EpochReport& report) {
+  if (simulation.state().step != row_step_) {
+    row_step_ = simulation.state().step;
+    histories_.write(simulation, report);
+  }
+}
+
+void RunOutput::flush() {
+  histories_.flush();
+  if (hashes_) {
+    hashes_->flush();
+  }
+  flushed_ = std::chrono::steady_clock::now();
+}
+
+void RunOutput::close() {
+  std::exception_ptr first;
+  const auto attempt = [&first](const std::function<void()>& work) {
+    try {
+      work();
+    } catch (...) {
+      first = first ? first : std::current_exception();
+    }
+  };
+  attempt([this] { histories_.close(); });
+  attempt([this] {
+    if (hashes_) {
+      hashes_->close();
+    }
+  });
+  attempt([this] { xdmf_.close(); });
+  attempt([this] { results_.close(); });
+  if (first) {
+    std::rethrow_exception(first);
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> files_of(const io::RunDirectory& directory) {
+  std::vector<std::pair<std::string, std::string>> files{
+      {"results", directory.results().string()}, {"xdmf", directory.xdmf().string()},
+      {"deck", directory.deck().string()},       {"versions", directory.versions().string()},
+      {"log", directory.log().string()},         {"summary", directory.summary().string()},
+      {"hashes", directory.hashes().string()}};
+  for (const char* name : {"energies", "momenta", "steps", "planes", "nodes", "bodies"}) {
+    files.emplace_back(name, directory.history(name).string());
+  }
+  // The summary is about to be written.
+  std::erase_if(files, [](const auto& file) { return file.first != "summary" && !fs::exists(file.second); });
+  return files;
+}
+
+}  // namespace fexp::app

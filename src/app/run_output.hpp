@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/histories.hpp"
+#include "app/load.hpp"
+#include "app/log.hpp"
+#include "cluster/simulation.hpp"
+#include "io/hash_log.hpp"
+#include "io/run_directory.hpp"
+#include "io/vtkhdf.hpp"
+#include "io/xdmf.hpp"
+#include "model/capture.hpp"
+
+namespace fexp::app {
+
+/// All files that a run writes as it goes on. Failures throw OutputError.
+class RunOutput {
+ public:
+  /// Creates the files. `hashes`: hashes.csv too.
+  RunOutput(const io::RunDirectory& directory, const Case& loaded, std::int64_t expected_frames, bool hashes);
+
+  void log(std::string_view text) { log_.line(text); }
+  /// After every epoch: hashes, and what the histories sum up between their rows.
+  void epoch(const cluster::EpochReport& report);
+  /// Writes the present state as a frame; nothing when the last frame is of this step.
+  void frame(const cluster::Simulation& simulation, const cluster::EpochReport& report);
+  /// Writes rows of the present state; nothing when the last rows are of this step.
+  void row(const cluster::Simulation& simulation, const cluster::EpochReport& report);
+
+  /// Closes all files. After an error it leaves nothing open, keeps what can be kept and throws the first error.
+  void close();
+
+  [[nodiscard]] std::int64_t frames() const noexcept { return results_.frames(); }
+
+ private:
+  void flush();
+
+  const Case& loaded_;
+  Log log_;
+  io::ResultsWriter results_;
+  io::XdmfWriter xdmf_;
+  Histories histories_;
+  std::optional<io::HashLogWriter> hashes_;
+  model::Frame frame_;
+  std::int64_t frame_step_{-1};
+  std::int64_t row_step_{-1};
+  std::chrono::steady_clock::time_point flushed_{std::chrono::steady_clock::now()};
+};
+
+/// (what it is, path) of every file in the directory that a run writes, in a fixed order; only those that are there.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> files_of(const io::RunDirectory& directory);
+
+}  // namespace fexp::app

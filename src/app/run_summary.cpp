@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/run_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/progress.hpp"
+#include "parallel/parallel.hpp"
+
+namespace fexp::app {
+
+namespace {
+
+const char* name_of(EndReason reason) {
+  switch (reason) {
+    case EndReason::completed:
+      return "completed";
+    case EndReason::fault:
+      return "fault";
+    case EndReason::interrupted:
+      return "interrupted";
+    case EndReason::output_error:
+      return "output error";
+  }
+  return "";
+}
+
+void add_extremes(const cluster::RunExtremes& x, io::Summary& summary) {
+  summary.energy_error = x.energy_error;
+  summary.linear_momentum_error = x.linear_momentum_error;
+  summary.angular_momentum_error = x.angular_momentum_error;
+  summary.step_smallest = x.largest_dt > 0.0 ? x.smallest_dt : 0.0;
+  summary.step_largest = x.largest_dt;
+  summary.epochs = x.epochs;
+  summary.rollbacks = x.rollbacks;
+  summary.islands_fewest = x.fewest_islands;
+  summary.islands_most = x.most_islands;
+  summary.contacts_most = x.most_active_pairs;
+  summary.searches = x.searches;
+  summary.deepest_penetration = x.deepest;
+}
+
+void add_fault(const model::Model& model, const cluster::Fault& fault, io::Summary& summary) {
+  if (fault.element != no_index) {
+    summary.fault.element = model.element_label[at(fault.element)];
+  }
+  if (fault.node != no_index) {
+    summary.fault.node = model.node_label[at(fault.node)];
+  }
+  if (fault.body != no_index) {
+    summary.fault.body = model.bodies[at(fault.body)].name;
+  }
+  summary.fault.cure = fault.cure;
+}
+
+std::string energies_text(const solve::Energies& a, const solve::Energies& b, const std::string& unit) {
+  const auto line = [](const char* name, double at_start, double at_end) {
+    return fmt::format("    {:<12}{:>14.6g}{:>14.6g}\n", name, at_start, at_end);
+  };
+  return fmt::format("  energy [{}]   at the start    at the end\n", unit) + line("kinetic", a.kinetic, b.kinetic) +
+         line("internal", a.internal, b.internal) + line("contact", a.contact, b.contact) +
+         line("barrier", a.barrier, b.barrier) + line("damping", a.damping, b.damping) +
+         line("external", a.external, b.external) + line("balance", a.balance(), b.balance());
+}
+
+/// Names of all files but the directory's, which they share.
+std::string files_text(const io::Summary& summary) {
+  if (summary.files.empty()) {
+    return "";
+  }
+  std::string text =
+      "  files      in " + std::filesystem::path(summary.files.front().second).parent_path().string() + ":";
+  for (const auto& [what, path] : summary.files) {
+    text += " " + std::filesystem::path(path).filename().string();
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+io::Summary summarise(const Case& loaded, const cluster::Simulation& simulation, const RunEnd& end) {
+  const model::Model& model = loaded.model;
+  const model::State& state = simulation.state();
+  io::Summary summary;
+  summary.completed = end.reason == EndReason::completed;
+  summary.exit_reason = name_of(end.reason);
+  summary.message = end.message;
+  summary.title = loaded.deck.title;
+  summary.steps = state.step;
+  summary.time = state.time;
+  summary.duration = model.run.duration;
+  summary.elements = model.element_count();
+  summary.nodes = model.node_count();
+  summary.bodies = model.body_count();
+  summary.threads = parallel::thread_count();
+  summary.state_hash = fmt::format("{:016x}", model::state_hash(model, state));
+  summary.element_steps_per_second =
+      end.stepping_seconds > 0.0
+          ? static_cast<double>(state.step) * static_cast<double>(model.element_count()) / end.stepping_seconds
+          : 0.0;
+  const solve::Energies& e = end.last.diagnostics.energies;
+  summary.energies = {e.kinetic, e.internal, e.contact, e.barrier, e.external, e.damping, e.balance()};
+  summary.kernel = simulation.workspace().kernel.name;
+  add_extremes(simulation.extremes(), summary);
+  if (end.reason == EndReason::fault) {
+    add_fault(model, end.fault, summary);
+  }
+  return summary;
+}
+
+std::string summary_text(const io::Summary& s, const io::UnitNames& units, const solve::Diagnostics& start,
+                         const solve::Diagnostics& present) {
+  std::string text = fmt::format("{}{}{}\n", s.title, s.title.empty() ? "" : ": ", s.exit_reason);
+  text += fmt::format("  model      {} elements, {} nodes, {} bodies, {} to {} islands\n", s.elements, s.nodes,
+                      s.bodies, s.islands_fewest, s.islands_most);
+  text += fmt::format("  time       {:.6g} of {:.6g} {}, {} steps of {:.4g} to {:.4g}\n", s.time, s.duration,
+                      units.of("time"), s.steps, s.step_smallest, s.step_largest);
+  text += energies_text(start.energies, present.energies, units.of("force*length"));
+  text +=
+      fmt::format("  errors     energy {:.2e}, linear momentum {:.2e}, angular momentum {:.2e} (largest, relative)\n",
+                  s.energy_error, s.linear_momentum_error, s.angular_momentum_error);
+  const Vec3d& p = present.momenta.linear;
+  const Vec3d& l = present.momenta.angular;
+  text += fmt::format("  momentum   linear ({:.6g}, {:.6g}, {:.6g}) {}, angular ({:.6g}, {:.6g}, {:.6g}) {}\n", p.x,
+                      p.y, p.z, units.of("force*time"), l.x, l.y, l.z, units.of("force*length*time"));
+  text += fmt::format("  contact    at most {} pairs, deepest {:.1f} % of the contact distance, {} searches\n",
+                      s.contacts_most, 100.0 * s.deepest_penetration, s.searches);
+  text += fmt::format("  wall time  {} with {} threads ({} kernel), {}\n", wall_time_text(s.wall_seconds), s.threads,
+                      s.kernel, rate_text(s.element_steps_per_second));
+  text += fmt::format("  state      {} after step {}\n", s.state_hash, s.steps);
+  return text + files_text(s);
+}
+
+}  // namespace fexp::app

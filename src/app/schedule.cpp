@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/schedule.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fexp::app {
+
+namespace {
+
+/// Part of the shorter interval within which two moments are one: far above the rounding of the largest multiple, far
+/// below anything that a user can mean.
+constexpr double same_part = 1.0e-6;
+constexpr double most_multiples = 1.0e7;
+
+}  // namespace
+
+void fill_intervals(io::Deck& deck, const Place& place, ErrorList& errors) {
+  const double duration = deck.description.run.duration;
+  const auto fill = [&](const char* name, double& interval, double usual_parts) {
+    interval = interval > 0.0 ? interval : duration / usual_parts;
+    if (!(duration / interval <= most_multiples)) {
+      errors.add(place,
+                 fmt::format("output.{} = {} would be written {:.3g} times", name, interval, duration / interval),
+                 fmt::format(">= run.duration / {:.0e} = {}", most_multiples, duration / most_multiples),
+                 "give a longer interval");
+    }
+  };
+  fill("results_interval", deck.output.results_interval, 50.0);
+  fill("history_interval", deck.output.history_interval, 500.0);
+}
+
+Schedule::Schedule(double duration, double results_interval, double history_interval)
+    : duration_(duration),
+      same_(same_part * std::min({duration, results_interval, history_interval})),
+      results_{results_interval},
+      rows_{history_interval} {
+  find_next();
+}
+
+void Schedule::find_next() {
+  next_ = std::min(results_.time(), rows_.time());
+  if (next_ > duration_ - same_) {
+    next_ = duration_;
+    frame_due_ = row_due_ = true;
+    return;
+  }
+  frame_due_ = results_.time() < next_ + same_;
+  row_due_ = rows_.time() < next_ + same_;
+  // Of moments that are one, the frame's counts.
+  next_ = frame_due_ ? results_.time() : next_;
+}
+
+void Schedule::advance() {
+  over_ = over_ || next_ >= duration_;
+  results_.number += frame_due_ ? 1 : 0;
+  rows_.number += row_due_ ? 1 : 0;
+  find_next();
+}
+
+std::int64_t Schedule::frames() const noexcept {
+  // Multiples below the end, the start and the end.
+  return static_cast<std::int64_t>(std::ceil((duration_ - same_) / results_.interval)) + 1;
+}
+
+}  // namespace fexp::app

@@ -25,6 +25,8 @@ namespace {
 constexpr double trial_seconds = 1.0;
 /// Bodies told of one by one; --json tells of all.
 constexpr std::size_t most_bodies = 30;
+/// Output in fewer steps than this shortens them noticeably.
+constexpr double few_steps = 5.0;
 
 struct CheckOptions {
   std::string deck;
@@ -108,6 +110,27 @@ std::string bodies_text(const CheckReport& report) {
   return text + properties_text(report.total, report.loaded.deck.units);
 }
 
+/// What is allowed but seldom meant.
+std::string warnings_text(const CheckReport& report) {
+  const Case& loaded = report.loaded;
+  const Trial& trial = report.trial;
+  std::string text;
+  if (!trial.touching.empty()) {
+    text += fmt::format(
+        "  warning: {} bodies penetrate something at the start, the first is \"{}\", and will be pushed apart; move "
+        "them so far apart that their thicknesses do not overlap, or leave the pair out with contact.exclude\n",
+        trial.touching.size(), loaded.model.bodies[at(trial.touching.front())].name);
+  }
+  const double shorter = std::min(loaded.deck.output.results_interval, loaded.deck.output.history_interval);
+  if (shorter < few_steps * report.step()) {
+    text += fmt::format(
+        "  warning: output every {:.4g} {} is every {:.3g} steps, and steps are shortened to meet it; longer output "
+        "intervals make the run faster\n",
+        shorter, loaded.deck.units.of("time"), shorter / report.step());
+  }
+  return text;
+}
+
 std::string report_text(const CheckReport& report) {
   const Case& loaded = report.loaded;
   const Trial& trial = report.trial;
@@ -123,7 +146,7 @@ std::string report_text(const CheckReport& report) {
   text += fmt::format("  time: about {} with {} threads, without output; trial of {} steps, {}\n",
                       wall_time_text(trial.expected_seconds), parallel::thread_count(), trial.steps,
                       rate_text(trial.element_steps_per_second));
-  return text;
+  return text + warnings_text(report);
 }
 
 nlohmann::ordered_json properties_json(const BodyProperties& p) {
@@ -164,6 +187,7 @@ nlohmann::ordered_json report_json(const CheckReport& report) {
           {"threads", parallel::thread_count()},
           {"trial_steps", trial.steps},
           {"element_steps_per_second", trial.element_steps_per_second},
+          {"touching_bodies", trial.touching.size()},
           {"trial_fault", trial.last.fault.message}};
 }
 

@@ -101,7 +101,7 @@ BodySums sums_of(const cluster::Simulation& simulation, const model::Body& body)
   BodySums sums;
   for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
     sums.centre += (model.mass[at(n)] / body.mass) * simulation.state().motion[at(n)].position;
-    sums.contact_force += simulation.workspace().contact_force[at(n)];
+    sums.contact_force += simulation.workspace().contact.force[at(n)];
   }
   return sums;
 }
@@ -204,7 +204,7 @@ void Histories::write_nodes(const cluster::Simulation& simulation) {
       io::add_vector_cells(cells, motion.velocity);
       io::add_vector_cells(cells, state.acceleration[at(n)].linear);
       io::add_vector_cells(cells, motion.rotation_rate);
-      io::add_vector_cells(cells, simulation.workspace().contact_force[at(n)]);
+      io::add_vector_cells(cells, simulation.workspace().contact.force[at(n)]);
       nodes_->row(cells);
     }
   }

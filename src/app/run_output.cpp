@@ -52,7 +52,7 @@ void RunOutput::frame(const cluster::Simulation& simulation, const cluster::Epoc
     return;
   }
   frame_step_ = state.step;
-  model::capture_into(loaded_.model, state, simulation.workspace().contact_force, simulation.island_of_body(), frame_);
+  model::capture_into(loaded_.model, state, simulation.workspace().contact.force, simulation.island_of_body(), frame_);
   results_.append(frame_);
   xdmf_.append(state.time);
   log_.line(fmt::format("frame {}: time {:.6g}, step {}, dt {:.4g}, energy error {:.2e}, {} islands, {} contacts",

@@ -25,6 +25,12 @@ Trial run_trial(const Case& loaded, double seconds) {
   Schedule schedule(duration, intervals.results_interval, intervals.history_interval);
   cluster::Simulation simulation(loaded.model, solve::KernelChoice::automatic);
   Trial trial;
+  for (Index b = 0; b < loaded.model.body_count(); ++b) {
+    const model::BodyLedger& ledger = simulation.state().ledger[at(b)];
+    if (ledger.contact_energy > 0.0 || ledger.barrier_energy > 0.0) {
+      trial.touching.push_back(b);
+    }
+  }
   const auto start = std::chrono::steady_clock::now();
   while (!schedule.over() && trial.seconds < seconds && trial.last.fault.kind == cluster::FaultKind::none) {
     trial.last = simulation.run_epoch(schedule.next());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "app/load.hpp"
 #include "cluster/simulation.hpp"
@@ -16,7 +17,9 @@ struct Trial {
   double expected_steps{};    ///< Of the whole run, at the trial's mean step
   double expected_seconds{};  ///< Wall time of the whole run without output
   double element_steps_per_second{};
-  double memory_bytes{};      ///< Largest so far
+  double memory_bytes{};  ///< Largest so far
+  /// Bodies that touch each other or a rigid plane before anything moves, by the energy stored in that, ascending.
+  std::vector<Index> touching;
   cluster::EpochReport last;  ///< Of the last epoch
 };
 

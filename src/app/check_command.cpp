@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,6 +11,7 @@
 #include "app/command.hpp"
 #include "app/load.hpp"
 #include "app/options.hpp"
+#include "app/print.hpp"
 #include "app/progress.hpp"
 #include "app/schedule.hpp"
 #include "app/trial.hpp"
@@ -196,14 +196,14 @@ ExitCode check(const CheckOptions& options) {
   parallel::with_threads(options.threads, [&] {
     const Case loaded = load_case(options.deck);
     const CheckReport report = make_report(loaded);
-    fmt::print("{}",
-               options.json
-                   ? report_json(report).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
-                   : report_text(report));
+    if (options.json) {
+      print_json(report_json(report));
+    } else {
+      print_out(report_text(report));
+    }
     const cluster::Fault& fault = report.trial.last.fault;
     if (fault.kind != cluster::FaultKind::none) {
-      static_cast<void>(std::fflush(stdout));
-      fmt::print(stderr, "fexp: the trial stopped: {}; cure: {}\n", fault.message, fault.cure);
+      print_error(fmt::format("fexp: the trial stopped: {}; cure: {}\n", fault.message, fault.cure));
       code = ExitCode::fault;
     }
   });

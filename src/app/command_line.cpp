@@ -5,15 +5,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <new>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "app/command.hpp"
+#include "app/print.hpp"
 #include "base/errors.hpp"
 #include "io/output_error.hpp"
 #include "io/similar_names.hpp"
@@ -24,7 +23,7 @@ namespace {
 
 constexpr std::array commands{&run_command, &check_command, &info_command, &compare_command, &reference_command};
 
-void print_error(const std::string& text) { fmt::print(stderr, "fexp: {}\n", text); }
+void complain(const std::string& text) { print_error(fmt::format("fexp: {}\n", text)); }
 
 std::string exit_code_text() {
   std::string text = "Exit codes:\n";
@@ -105,8 +104,8 @@ ExitCode parse_and_run(int argc, const char* const* argv) {
   const std::string first = argc > 1 ? argv[1] : "";
   const std::vector<std::string> names = command_names();
   if (!first.empty() && !first.starts_with("-") && std::ranges::find(names, first) == names.end()) {
-    print_error(fmt::format("unknown command \"{}\"{}\nCommands: {}. \"fexp --help\" tells more.", first,
-                            suggestion(first, names), fmt::join(names, ", ")));
+    complain(fmt::format("unknown command \"{}\"{}\nCommands: {}. \"fexp --help\" tells more.", first,
+                         suggestion(first, names), fmt::join(names, ", ")));
     return ExitCode::wrong_input;
   }
   Parser parser;
@@ -118,7 +117,7 @@ ExitCode parse_and_run(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     const CLI::App& options = parser.chosen();
     const std::string command = options.get_name() == "fexp" ? "fexp" : "fexp " + options.get_name();
-    print_error(fmt::format("{}\n\"{} --help\" tells what is known.", usage_error(options, error), command));
+    complain(fmt::format("{}\n\"{} --help\" tells what is known.", usage_error(options, error), command));
     return ExitCode::wrong_input;
   }
   const auto is_chosen = [](const auto& action) { return action.first->parsed(); };
@@ -130,16 +129,16 @@ ExitCode run_guarded(int argc, const char* const* argv) noexcept {
     return parse_and_run(argc, argv);
   } catch (const InputErrors& errors) {
     for (const InputError& error : errors.errors()) {
-      print_error(error.text());
+      complain(error.text());
     }
     return ExitCode::wrong_input;
   } catch (const io::OutputError& error) {
-    print_error(error.what());
+    complain(error.what());
     return ExitCode::output;
   } catch (const std::bad_alloc&) {
-    std::fputs("fexp: out of memory; cure: take a coarser mesh, fewer bodies or a machine with more memory\n", stderr);
+    print_error("fexp: out of memory; cure: take a coarser mesh, fewer bodies or a machine with more memory\n");
   } catch (const std::exception& error) {
-    print_error(fmt::format("an error of fexp itself: {}; cure: report it with the deck", error.what()));
+    complain(fmt::format("an error of fexp itself: {}; cure: report it with the deck", error.what()));
   }
   return ExitCode::internal;
 }
@@ -149,7 +148,7 @@ ExitCode run_guarded(int argc, const char* const* argv) noexcept {
 int run_command_line(int argc, const char* const* argv) noexcept {
   ExitCode code = run_guarded(argc, argv);
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    std::fprintf(stderr, "fexp: cannot write to the standard output: %s\n", std::strerror(errno));
+    print_error("fexp: cannot write to the standard output; cure: free some space or direct it elsewhere\n");
     code = code == ExitCode::done ? ExitCode::output : code;
   }
   return static_cast<int>(code);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <string>
 
 #include "app/command.hpp"
+#include "app/print.hpp"
 #include "io/compare.hpp"
 #include "io/output_error.hpp"
 
@@ -21,10 +21,10 @@ struct CompareOptions {
 ExitCode compare(const CompareOptions& options) {
   try {
     const io::Comparison comparison = io::compare_runs(options.a, options.b);
-    fmt::print("{}", comparison.text());
+    print_out(comparison.text());
     return !comparison.comparable ? ExitCode::wrong_input : comparison.same ? ExitCode::done : ExitCode::different;
   } catch (const io::OutputError& error) {
-    fmt::print(stderr, "fexp: {}\n", error.what());
+    print_error(fmt::format("fexp: {}\n", error.what()));
     return ExitCode::wrong_input;
   }
 }

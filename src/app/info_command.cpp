@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "app/command.hpp"
 #include "app/options.hpp"
+#include "app/print.hpp"
 #include "io/output_error.hpp"
 #include "io/vtkhdf_info.hpp"
 
@@ -23,12 +23,13 @@ struct InfoOptions {
 ExitCode info(const InfoOptions& options) {
   try {
     const io::ResultsInfo info = io::read_info(options.result);
-    fmt::print("{}",
-               options.json
-                   ? io::to_json(info).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
-                   : info.text());
+    if (options.json) {
+      print_json(io::to_json(info));
+    } else {
+      print_out(info.text());
+    }
   } catch (const io::OutputError& error) {
-    fmt::print(stderr, "fexp: {}\n", error.what());
+    print_error(fmt::format("fexp: {}\n", error.what()));
     return ExitCode::wrong_input;
   }
   return ExitCode::done;

@@ -7,8 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
+
+#include "app/print.hpp"
 
 namespace fexp::app {
 
@@ -40,9 +41,10 @@ std::string wall_time_text(double seconds) {
                       : fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-std::string rate_text(double rate) {
-  return rate < 1.0e6 ? fmt::format("{:.0f} element-steps/s", rate)
-                      : fmt::format("{:.1f} million element-steps/s", 1.0e-6 * rate);
+std::string rate_text(double element_steps_per_second) {
+  return element_steps_per_second < 1.0e6
+             ? fmt::format("{:.0f} element-steps/s", element_steps_per_second)
+             : fmt::format("{:.1f} million element-steps/s", 1.0e-6 * element_steps_per_second);
 }
 
 Progress::Progress(bool shown, double duration, std::string time_unit)
@@ -79,19 +81,18 @@ void Progress::show(const cluster::Simulation& simulation, const cluster::EpochR
   last_ = now;
   last_part_ = part;
   if (!terminal_) {
-    fmt::print(stderr, "{}\n", line);
+    print_error(line + "\n");
     return;
   }
   // A line as wide as the terminal would scroll it.
   line.resize(std::min(line.size(), terminal_columns() - 1));
-  fmt::print(stderr, "\r{}\x1b[K", line);
-  static_cast<void>(std::fflush(stderr));
+  print_error(fmt::format("\r{}\x1b[K", line));
   on_line_ = true;
 }
 
 void Progress::clear() {
   if (on_line_) {
-    fmt::print(stderr, "\r\x1b[K");
+    print_error("\r\x1b[K");
     on_line_ = false;
   }
 }

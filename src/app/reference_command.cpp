@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include "app/command.hpp"
+#include "app/print.hpp"
 #include "io/deck.hpp"
 
 namespace fexp::app {
@@ -10,7 +9,7 @@ namespace {
 
 std::function<ExitCode()> declare(CLI::App&) {
   return [] {
-    fmt::print("{}", io::deck_reference());
+    print_out(io::deck_reference());
     return ExitCode::done;
   };
 }

@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <csignal>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,6 +11,7 @@
 #include "app/command.hpp"
 #include "app/load.hpp"
 #include "app/options.hpp"
+#include "app/print.hpp"
 #include "app/progress.hpp"
 #include "app/run_output.hpp"
 #include "app/run_summary.hpp"
@@ -85,18 +84,18 @@ ExitCode report_end(const RunEnd& end, const io::RunDirectory& directory) {
     case EndReason::completed:
       return ExitCode::done;
     case EndReason::fault:
-      fmt::print(stderr, "fexp: the run stopped: {}; cure: {}\nThe last sound state is the last frame of {}.\n",
-                 end.fault.message, end.fault.cure, results);
+      print_error(fmt::format("fexp: the run stopped: {}; cure: {}\nThe last sound state is the last frame of {}.\n",
+                              end.fault.message, end.fault.cure, results));
       return ExitCode::fault;
     case EndReason::interrupted:
-      fmt::print(stderr,
-                 "fexp: {}; all files are closed, and {} can be read up to there.\nTo go on, run the deck again: it "
-                 "begins at the start, in a new directory unless --out and --force say otherwise.\n",
-                 end.message, results);
+      print_error(fmt::format(
+          "fexp: {}; all files are closed, and {} can be read up to there.\nTo go on, run the deck again: it "
+          "begins at the start, in a new directory unless --out and --force say otherwise.\n",
+          end.message, results));
       return static_cast<ExitCode>(128 + end.signal);
     case EndReason::output_error:
-      fmt::print(stderr, "fexp: {}\nThe run stopped; frames written before can be read from {}.\n", end.message,
-                 results);
+      print_error(
+          fmt::format("fexp: {}\nThe run stopped; frames written before can be read from {}.\n", end.message, results));
       return ExitCode::output;
   }
   return ExitCode::internal;
@@ -127,17 +126,16 @@ ExitCode run_here(const RunOptions& options) {
     }
   }
   if (options.json) {
-    fmt::print("{}\n", io::to_json(summary).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    print_json(io::to_json(summary));
   } else if (!options.quiet) {
-    fmt::print("{}", summary_text(summary, loaded.deck.units, simulation.start(), end.last.diagnostics));
+    print_out(summary_text(summary, loaded.deck.units, simulation.start(), end.last.diagnostics));
   }
-  static_cast<void>(std::fflush(stdout));
   return report_end(end, directory);
 }
 
 ExitCode run(const RunOptions& options) {
   if (solve::select_element_kernel(options.kernel).function == nullptr) {
-    fmt::print(stderr, "fexp: --kernel: this processor cannot run the kernel asked for; cure: leave --kernel out\n");
+    print_error("fexp: --kernel: this processor cannot run the kernel asked for; cure: leave --kernel out\n");
     return ExitCode::wrong_input;
   }
   ExitCode code = ExitCode::internal;

@@ -17,12 +17,12 @@ constexpr double most_multiples = 1.0e7;
 
 }  // namespace
 
-void fill_intervals(io::Deck& deck, const Place& place, ErrorList& errors) {
+void fill_intervals(io::Deck& deck, ErrorList& errors) {
   const double duration = deck.description.run.duration;
   const auto fill = [&](const char* name, double& interval, double usual_parts) {
     interval = interval > 0.0 ? interval : duration / usual_parts;
     if (!(duration / interval <= most_multiples)) {
-      errors.add(place,
+      errors.add(deck.output.place,
                  fmt::format("output.{} = {} would be written {:.3g} times", name, interval, duration / interval),
                  fmt::format(">= run.duration / {:.0e} = {}", most_multiples, duration / most_multiples),
                  "give a longer interval");

@@ -9,7 +9,7 @@
 namespace fexp::app {
 
 /// Fills in output intervals that the deck leaves out, and reports those that would ask for more rows than any use.
-void fill_intervals(io::Deck& deck, const Place& place, ErrorList& errors);
+void fill_intervals(io::Deck& deck, ErrorList& errors);
 
 /// The moments of output: multiples of both intervals and the end. Multiples are counted, not added up, so none is
 /// missed or doubled by rounding, and moments that differ by rounding only are one.

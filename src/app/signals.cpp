@@ -40,14 +40,14 @@ SignalWatch::SignalWatch() {
     }
   }
   for (const int signal : writing) {
-    std::signal(signal, SIG_IGN);
+    static_cast<void>(std::signal(signal, SIG_IGN));
   }
 }
 
 SignalWatch::~SignalWatch() {
   back_to_default();
   for (const int signal : writing) {
-    std::signal(signal, SIG_DFL);
+    static_cast<void>(std::signal(signal, SIG_DFL));
   }
 }
 

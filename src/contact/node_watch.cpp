@@ -11,6 +11,8 @@ namespace {
 /// Normals of neighbours that enclose less than 60 degrees count as one smooth surface: there only the closest face
 /// pushes, so that a node sliding over an edge never feels two. In sharper valleys both faces push.
 constexpr double smooth_cosine = 0.5;
+/// Triangles that a node may pass in one step while it is followed.
+constexpr int most_hops = 8;
 
 const model::ContactSide* find(std::span<const model::ContactSide> memory, Index element) {
   const auto found = std::lower_bound(memory.begin(), memory.end(), element,
@@ -18,10 +20,8 @@ const model::ContactSide* find(std::span<const model::ContactSide> memory, Index
   return found != memory.end() && found->element == element ? &*found : nullptr;
 }
 
-void sort_unique(std::vector<Index>& elements) {
-  std::sort(elements.begin(), elements.end());
-  elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
-}
+bool by_element(const model::ContactSide& a, const model::ContactSide& b) noexcept { return a.element < b.element; }
+bool same_element(const model::ContactSide& a, const model::ContactSide& b) noexcept { return a.element == b.element; }
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void NodeWatch::look(Index node, std::span<const Index> candidates, std::span<co
   node_ = node;
   point_ = now_(node);
   gather(candidates, memory);
-  measure(memory);
+  measure();
   if (watched_.empty()) {
     return;
   }
@@ -42,37 +42,53 @@ void NodeWatch::look(Index node, std::span<const Index> candidates, std::span<co
   push(active);
 }
 
-/// Candidates, remembered elements, and the neighbours of remembered elements that the node has come through: it may
-/// slide on to them at a depth at which nobody else would look for it.
+/// Candidates, remembered elements, and those on to which the node has slid from a remembered one that it has come
+/// through: there it may be at a depth at which nobody else would look for it.
 void NodeWatch::gather(std::span<const Index> candidates, std::span<const model::ContactSide> memory) {
-  deep_.clear();
-  for (const model::ContactSide& side : memory) {
-    const Watched w = measured(side.element);
-    if (!w.rim && w.present_side != side.side) {
-      add_ring(side.element);
-    }
-  }
-  sort_unique(deep_);
   elements_.assign(candidates.begin(), candidates.end());
+  deep_.clear();
   if (memory.empty()) {
     return;
   }
-  for (const model::ContactSide& side : memory) {
-    elements_.push_back(side.element);
+  for (const model::ContactSide& known : memory) {
+    elements_.push_back(known.element);
+    follow(known);
   }
-  elements_.insert(elements_.end(), deep_.begin(), deep_.end());
-  sort_unique(elements_);
+  std::sort(deep_.begin(), deep_.end(), by_element);
+  deep_.erase(std::unique(deep_.begin(), deep_.end(), same_element), deep_.end());
+  for (const model::ContactSide& deep : deep_) {
+    elements_.push_back(deep.element);
+  }
+  std::sort(elements_.begin(), elements_.end());
+  elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
 }
 
-void NodeWatch::add_ring(Index element) {
-  for (const Index corner : model_.triangle[at(element)]) {
-    for (Index c = model_.corner_start[at(corner)]; c < model_.corner_start[at(corner) + 1]; ++c) {
-      const Index other = model_.corner[at(c)] / 3;
-      if (may_touch(model_, node_, other)) {
-        deep_.push_back(other);
-      }
-    }
+/// From an element that the node has come through to the neighbour that is closer now, until none is: there the pair
+/// goes on. On the rim of a surface it ends.
+void NodeWatch::follow(const model::ContactSide& known) {
+  Watched w = measured(known.element);
+  if (!w.is_through(known.side)) {
+    return;
   }
+  for (int hop = 0; hop < most_hops && !w.acts; ++hop) {
+    if (!may_touch(model_, node_, w.closer)) {
+      return;
+    }
+    w = measured(w.closer);
+  }
+  const double deepest = watch_distance(model_, node_, w.element) + depth_limit(w.element);
+  if (w.acts && w.is_through(known.side) && w.distance < deepest) {
+    deep_.push_back({node_, w.element, known.side});
+  }
+}
+
+/// Depth at which a pair is given up [length]: the size of the smaller of node and element.
+double NodeWatch::depth_limit(Index element) const {
+  double size = model_.node_size[at(node_)];
+  for (const Index n : model_.triangle[at(element)]) {
+    size = std::min(size, model_.node_size[at(n)]);
+  }
+  return size;
 }
 
 NodeWatch::Watched NodeWatch::measured(Index element) const {
@@ -82,48 +98,32 @@ NodeWatch::Watched NodeWatch::measured(Index element) const {
   w.distance = std::sqrt(w.closest.distance2);
   w.normal = unit_normal(model_, now_, element);
   w.rim = is_on_rim(model_, element, w.closest.feature);
-  w.present_side = side_of(model_, now_, element, w.closest);
+  w.view = view_of(model_, now_, element, w.closest);
+  w.acts = true;
+  double least = w.closest.distance2;
+  Index first = element;
+  for_each_sharing(model_, element, w.closest.feature, [&](Index other) {
+    const double theirs = closest_on(model_, now_, other, point_).distance2;
+    if (theirs < least || (theirs == least && other < first)) {
+      least = theirs;
+      first = other;
+      w.acts = false;
+      w.closer = other;
+    }
+  });
   return w;
 }
 
-/// Keeps pairs within watch distance, and pairs that the node has come through down to a depth of its own size: deeper
-/// ones have lost each other. Of all elements that share a feature, the closest acts (by squared distance, then
-/// number).
-void NodeWatch::measure(std::span<const model::ContactSide> memory) {
+/// Keeps pairs within watch distance, and those that the node has come through and that `follow` has found. Of all
+/// elements that share a feature, the closest acts (by squared distance, then number).
+void NodeWatch::measure() {
   watched_.clear();
   for (const Index element : elements_) {
     const double watch = watch_distance(model_, node_, element);
-    const double distance2 = closest_on(model_, now_, element, point_).distance2;
-    if (distance2 >= watch * watch && !is_deep(element, distance2, watch, memory)) {
-      continue;
+    if (closest_on(model_, now_, element, point_).distance2 < watch * watch || find(deep_, element) != nullptr) {
+      watched_.push_back(measured(element));
     }
-    Watched w = measured(element);
-    w.acts = true;
-    double least = w.closest.distance2;
-    Index first = element;
-    for_each_sharing(model_, element, w.closest.feature, [&](Index other) {
-      const double theirs = closest_on(model_, now_, other, point_).distance2;
-      if (theirs < least || (theirs == least && other < first)) {
-        least = theirs;
-        first = other;
-        w.acts = false;
-        w.closer = other;
-      }
-    });
-    watched_.push_back(w);
   }
-}
-
-/// Whether the node has come through the element, but not deeper than the pair is kept for.
-bool NodeWatch::is_deep(Index element, double distance2, double watch,
-                        std::span<const model::ContactSide> memory) const {
-  const double deepest = watch + model_.node_size[at(node_)];
-  if (distance2 >= deepest * deepest || !std::binary_search(deep_.begin(), deep_.end(), element)) {
-    return false;
-  }
-  const Watched w = measured(element);
-  const model::ContactSide* known = find(memory, element);
-  return !w.rim && w.present_side == -(known != nullptr ? known->side : inherited_side(element, memory));
 }
 
 /// Side of a remembered element that is next to this one, of those across an edge first; 0 when there is none.
@@ -144,22 +144,31 @@ int NodeWatch::inherited_side(Index element, std::span<const model::ContactSide>
 void NodeWatch::decide_sides(std::span<const model::ContactSide> memory) {
   for (Watched& w : watched_) {
     if (w.rim) {
-      w.side = w.present_side;
+      w.side = w.view.side;
     } else if (const model::ContactSide* known = find(memory, w.element)) {
       w.side = known->side;
+    } else if (const model::ContactSide* deep = find(deep_, w.element)) {
+      w.side = deep->side;
     } else {
       w.side = inherited_side(w.element, memory);
     }
     if (w.side == 0) {
-      w.side = side_of(model_, before_, w.element, closest_on(model_, before_, w.element, before_(node_)));
+      w.side = view_of(model_, before_, w.element, closest_on(model_, before_, w.element, before_(node_))).side;
     }
   }
-  // Where a neighbour is closer, its side is what counts: a node that goes round a rim takes the others along.
+  // Where a neighbour is closer, its side is what counts: a node that goes round a rim takes the others along. A closer
+  // neighbour that is not watched is the node's own element, and until the node stands before the face itself there is
+  // nothing to remember.
   for (Watched& w : watched_) {
-    for (const Watched& other : watched_) {
-      if (other.element == w.closer && other.acts) {
-        w.side = other.side;
-      }
+    if (w.acts) {
+      continue;
+    }
+    const auto closer =
+        std::find_if(watched_.begin(), watched_.end(), [&](const Watched& other) { return other.element == w.closer; });
+    if (closer == watched_.end()) {
+      w.side = dot(w.closest.offset, w.normal) < 0.0 ? -1 : 1;
+    } else if (closer->acts) {
+      w.side = closer->side;
     }
   }
 }
@@ -211,8 +220,7 @@ void NodeWatch::push(std::vector<ActivePair>& active) const {
       continue;
     }
     const double distance = contact_distance(w);
-    // On the rim the distance itself is the gap: there is no other side.
-    const bool through = !w.rim && w.present_side != w.side;
+    const bool through = w.is_through(w.side);
     const double depth = distance - (through ? -w.distance : w.distance);
     if (!(depth > 0.0)) {
       continue;

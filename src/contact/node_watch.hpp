@@ -44,22 +44,25 @@ class NodeWatch {
     physics::ClosestPoint closest{};
     Vec3d normal;            ///< Unit normal of the element
     double distance{};       ///< To the closest point [length]
-    int present_side{};      ///< Where the node stands now
+    View view;               ///< Where the node stands now
     int side{};              ///< Where it belongs; 0 while not decided
     bool rim{};              ///< The closest point lies on the rim of an open surface
     bool acts{};             ///< No element that shares the feature is closer
     Index closer{no_index};  ///< The closest of those, when it does not act
+
+    /// Whether a node that belongs on `home` has come through here. Off the rim of an open surface and off the tip of a
+    /// sharp fold there is no other side to come from.
+    [[nodiscard]] bool is_through(int home) const noexcept { return !rim && view.agreed && view.side != home; }
   };
 
   void gather(std::span<const Index> candidates, std::span<const model::ContactSide> memory);
-  void add_ring(Index element);
-  void measure(std::span<const model::ContactSide> memory);
+  void follow(const model::ContactSide& known);
+  void measure();
   void decide_sides(std::span<const model::ContactSide> memory);
   void leave_one_of_smooth_neighbours();
   void push(std::vector<ActivePair>& active) const;
 
-  [[nodiscard]] bool is_deep(Index element, double distance2, double watch,
-                             std::span<const model::ContactSide> memory) const;
+  [[nodiscard]] double depth_limit(Index element) const;
   [[nodiscard]] Watched measured(Index element) const;
   [[nodiscard]] int inherited_side(Index element, std::span<const model::ContactSide> memory) const;
   [[nodiscard]] double contact_distance(const Watched& watched) const;
@@ -71,7 +74,7 @@ class NodeWatch {
   Index node_{};
   Vec3d point_;
   std::vector<Index> elements_;
-  std::vector<Index> deep_;  ///< Elements round those the node has come through, themselves included
+  std::vector<model::ContactSide> deep_;  ///< Elements that the node has come through and where it belongs
   std::vector<Watched> watched_;
 };
 

@@ -42,14 +42,17 @@ Vec3d unit_normal(const model::Model& model, const Positions& x, Index element) 
   return (1.0 / norm(normal)) * normal;
 }
 
-int side_of(const model::Model& model, const Positions& x, Index element,
-            const physics::ClosestPoint& closest) noexcept {
+View view_of(const model::Model& model, const Positions& x, Index element,
+             const physics::ClosestPoint& closest) noexcept {
   double steepest = dot(closest.offset, unit_normal(model, x, element));
+  double lowest = steepest, highest = steepest;
   for_each_sharing(model, element, closest.feature, [&](Index other) {
     const double view = dot(closest.offset, unit_normal(model, x, other));
     steepest = std::abs(view) > std::abs(steepest) ? view : steepest;
+    lowest = view < lowest ? view : lowest;
+    highest = view > highest ? view : highest;
   });
-  return steepest < 0.0 ? -1 : 1;
+  return {steepest < 0.0 ? -1 : 1, lowest >= 0.0 || highest <= 0.0};
 }
 
 bool may_touch(const model::Model& model, Index node, Index element) noexcept {

@@ -47,10 +47,15 @@ void for_each_sharing(const model::Model& model, Index element, physics::Feature
 /// Whether the feature lies on the rim of an open surface, where a node may go round from one side to the other.
 [[nodiscard]] bool is_on_rim(const model::Model& model, Index element, physics::Feature feature) noexcept;
 
-/// Side of the surface on which a point stands: +1 where the normals point, -1 behind. At an edge or a corner the
-/// element with the steepest view of the point decides, which is right for every fold.
-[[nodiscard]] int side_of(const model::Model& model, const Positions& x, Index element,
-                          const physics::ClosestPoint& closest) noexcept;
+/// How a point sees the surface round its closest point.
+struct View {
+  int side{};     ///< +1 where the normals point, -1 behind; the element with the steepest view decides
+  bool agreed{};  ///< All elements that share the feature say the same; off the tip of a sharp fold they do not
+};
+
+/// At an edge or a corner the element with the steepest view is right for every fold.
+[[nodiscard]] View view_of(const model::Model& model, const Positions& x, Index element,
+                           const physics::ClosestPoint& closest) noexcept;
 
 /// Unit normal of an element.
 [[nodiscard]] Vec3d unit_normal(const model::Model& model, const Positions& x, Index element) noexcept;

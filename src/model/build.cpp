@@ -55,28 +55,6 @@ void build_masses(Model& model) {
     element_step[at(e)] =
         physics::element_critical_step({section.thickness, section.moduli, model.run.drilling}, section.density, frame);
   });
-  model.mass.resize(nodes);
-  model.inertia.resize(nodes);
-  model.half_thickness.resize(nodes);
-  model.node_size.resize(nodes);
-  model.contact_stiffness.resize(nodes);
-  parallel::for_each(model.node_count(), 1024, [&](Index n) {
-    double mass = 0.0, inertia = 0.0, thickness = 0.0, step = HUGE_VAL, area = HUGE_VAL;
-    for (Index c = model.corner_start[at(n)]; c < model.corner_start[at(n) + 1]; ++c) {
-      const Index e = model.corner[at(c)] / 3;
-      mass += element_mass[at(e)];
-      inertia += element_inertia[at(e)];
-      thickness = std::max(thickness, model.section_of(e).thickness);
-      step = std::min(step, element_step[at(e)]);
-      area = std::min(area, model.reference_area[at(e)]);
-    }
-    const double frequency = penalty_courant / step;
-    model.mass[at(n)] = mass;
-    model.inertia[at(n)] = inertia;
-    model.half_thickness[at(n)] = 0.5 * thickness;
-    model.node_size[at(n)] = std::sqrt(area);
-    model.contact_stiffness[at(n)] = model.contact.penalty_scale * mass * frequency * frequency;
-  });
   model.first_critical_step = HUGE_VAL;
   for (std::size_t e = 0; e < elements; ++e) {
     if (element_step[e] < model.first_critical_step) {
@@ -84,6 +62,27 @@ void build_masses(Model& model) {
       model.first_critical_element = static_cast<Index>(e);
     }
   }
+  const double frequency = penalty_courant / model.first_critical_step;
+  model.mass.resize(nodes);
+  model.inertia.resize(nodes);
+  model.half_thickness.resize(nodes);
+  model.node_size.resize(nodes);
+  model.contact_stiffness.resize(nodes);
+  parallel::for_each(model.node_count(), 1024, [&](Index n) {
+    double mass = 0.0, inertia = 0.0, thickness = 0.0, area = HUGE_VAL;
+    for (Index c = model.corner_start[at(n)]; c < model.corner_start[at(n) + 1]; ++c) {
+      const Index e = model.corner[at(c)] / 3;
+      mass += element_mass[at(e)];
+      inertia += element_inertia[at(e)];
+      thickness = std::max(thickness, model.section_of(e).thickness);
+      area = std::min(area, model.reference_area[at(e)]);
+    }
+    model.mass[at(n)] = mass;
+    model.inertia[at(n)] = inertia;
+    model.half_thickness[at(n)] = 0.5 * thickness;
+    model.node_size[at(n)] = std::sqrt(area);
+    model.contact_stiffness[at(n)] = model.contact.penalty_scale * mass * frequency * frequency;
+  });
   for (Body& body : model.bodies) {
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
       body.mass += model.mass[at(n)];

@@ -273,14 +273,15 @@ struct RigidPlane {
   std::string name;
   Vec3d point{};           ///< [length]
   Vec3d normal{};          ///< Points to the free side; normalised when the model is built.
-  double stiffness{-1.0};  ///< Penalty stiffness per node [force/length]; negative: from the element step.
+  double stiffness{-1.0};  ///< Penalty stiffness per node [force/length]; negative: from the first critical step.
   Place place;
 
   static constexpr auto fields = std::tuple{
       Field{"name", "-", "Name used in histories.", &RigidPlane::name, any_number, Presence::required},
       Field{"point", "length", "A point of the plane.", &RigidPlane::point, any_number, Presence::required},
       Field{"normal", "-", "Normal, pointing to the free side.", &RigidPlane::normal, any_number, Presence::required},
-      Field{"stiffness", "force/length", "Penalty stiffness per node; from the element step when left out.",
+      Field{"stiffness", "force/length",
+            "Penalty stiffness per node; from the mass and the first critical step when left out.",
             &RigidPlane::stiffness, positive},
   };
 };
@@ -288,17 +289,18 @@ struct RigidPlane {
 struct ContactSettings {
   bool enabled{true};
   bool self{true};            ///< Bodies touch themselves.
-  double penalty_scale{1.0};  ///< Factor on the stiffness that the element step gives [-]
-  double stiffness{-1.0};     ///< Penalty stiffness per pair [force/length]; negative: from the element step.
+  double penalty_scale{1.0};  ///< Factor on the stiffness that mass and first critical step give [-]
+  double stiffness{-1.0};     ///< Penalty stiffness per pair [force/length]; negative: from the first critical step.
   std::vector<std::array<std::string, 2>> exclude;  ///< Pairs of bodies that do not touch; twice the same: itself.
   Place place;
 
   static constexpr auto fields = std::tuple{
       Field{"enabled", "-", "Contact between all bodies.", &ContactSettings::enabled},
       Field{"self", "-", "Contact of each body with itself.", &ContactSettings::self},
-      Field{"penalty_scale", "-", "Factor on the penalty stiffness that the element step gives.",
+      Field{"penalty_scale", "-", "Factor on the penalty stiffness that mass and first critical step give.",
             &ContactSettings::penalty_scale, positive},
-      Field{"stiffness", "force/length", "Penalty stiffness of every pair; from the element step when left out.",
+      Field{"stiffness", "force/length",
+            "Penalty stiffness of every pair; from the mass and the first critical step when left out.",
             &ContactSettings::stiffness, positive},
       Field{"exclude", "-", "Pairs of body names that do not touch; the same name twice: no self-contact.",
             &ContactSettings::exclude},

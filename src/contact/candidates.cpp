@@ -20,13 +20,12 @@ constexpr double rounding = 1.0e-9;
 void CandidateSearch::assign(const model::Model& model, std::span<const Index> bodies) {
   nodes_.clear();
   elements_.clear();
-  largest_reach_ = 0.0;
+  reach_.clear();
   for (const Index index : bodies) {
     const model::Body& body = model.bodies[at(index)];
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
       nodes_.push_back(n);
-      largest_reach_ =
-          std::max(largest_reach_, model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)]));
+      reach_.push_back((model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)])) * (1.0 + rounding));
     }
     for (Index e = body.elements.begin; e < body.elements.end; ++e) {
       elements_.push_back(e);
@@ -39,7 +38,7 @@ void CandidateSearch::assign(const model::Model& model, std::span<const Index> b
 void CandidateSearch::search(const model::Model& model, const Positions& x, double skin,
                              std::span<const Index> remembered, Candidates& found) {
   parallel::for_each(node_count(), point_grain, [&](Index i) { points_[at(i)] = x(nodes_[at(i)]); });
-  tree_.build(points_);
+  tree_.build(points_, reach_);
   query(model, x, skin);
   fill_rows(remembered, found);
 }
@@ -56,14 +55,16 @@ void CandidateSearch::query(const model::Model& model, const Positions& x, doubl
       for (const Index n : t) {
         box.include(x(n));
       }
-      box = box.grown((largest_reach_ + half_thickness_of(model, element) + skin) * (1.0 + rounding));
+      box = box.grown((half_thickness_of(model, element) + skin) * (1.0 + rounding));
       tree_.query(box, [&](Index local) {
         const Index node = nodes_[at(local)];
+        const Vec3d& point = points_[at(local)];
         if (!may_touch(model, node, element)) {
           return;
         }
-        const double distance = std::sqrt(closest_on(model, x, element, points_[at(local)]).distance2);
-        const double slack = distance * (1.0 - rounding) - watch_distance(model, node, element) * (1.0 + rounding);
+        const double watch = watch_distance(model, node, element) * (1.0 + rounding);
+        const double distance = std::sqrt(closest_on(model, x, element, point).distance2);
+        const double slack = distance * (1.0 - rounding) - watch;
         if (slack <= skin) {
           pairs.push_back({local, element, slack});
         }

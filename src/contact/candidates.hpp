@@ -46,10 +46,10 @@ class CandidateSearch {
   std::vector<Index> nodes_;     // Of all bodies, ascending
   std::vector<Index> elements_;  // Of all bodies, ascending
   std::vector<Vec3d> points_;    // [nodes_]
+  std::vector<double> reach_;    // [nodes_]: half thickness and watch margin [length]
   std::vector<Index> row_size_;  // [nodes_]
   KdTree tree_;
   std::vector<std::vector<Pair>> pairs_;  // By piece of elements_
-  double largest_reach_{};                ///< Half thickness and watch margin of any node [length]
 };
 
 }  // namespace fexp::contact

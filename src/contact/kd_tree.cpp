@@ -38,11 +38,13 @@ IndexRange range_of(Index level, Index place, Index count) noexcept {
 
 }  // namespace
 
-void KdTree::build(std::span<const Vec3d> points) {
+void KdTree::build(std::span<const Vec3d> points, std::span<const double> reach) {
   const auto count = static_cast<Index>(points.size());
   given_ = points;
+  given_reach_ = reach;
   order_.resize(points.size());
   points_.resize(points.size());
+  reach_.assign(points.size(), 0.0);
   std::iota(order_.begin(), order_.end(), 0);
   Index levels = 0;
   while ((count >> levels) > leaf_points) {
@@ -52,8 +54,12 @@ void KdTree::build(std::span<const Vec3d> points) {
   for (Index level = 0; level <= levels; ++level) {
     split_level(level);
   }
-  parallel::for_each(count, copy_grain, [&](Index i) { points_[at(i)] = points[at(order_[at(i)])]; });
+  parallel::for_each(count, copy_grain, [&](Index i) {
+    points_[at(i)] = points[at(order_[at(i)])];
+    reach_[at(i)] = reach.empty() ? 0.0 : reach[at(order_[at(i)])];
+  });
   given_ = {};
+  given_reach_ = {};
 }
 
 /// Boxes of a level's subtrees, and their points halved for the next level.
@@ -66,7 +72,9 @@ void KdTree::split_level(Index level) {
         const IndexRange range = range_of(level, place, static_cast<Index>(order_.size()));
         Box box;
         for (Index i = range.begin; i < range.end; ++i) {
-          box.include(given_[at(order_[at(i)])]);
+          const Index point = order_[at(i)];
+          box.include(
+              Box{given_[at(point)], given_[at(point)]}.grown(given_reach_.empty() ? 0.0 : given_reach_[at(point)]));
         }
         boxes_[at(subtrees - 1 + place)] = box;
         if (!last) {

@@ -10,15 +10,17 @@
 
 namespace fexp::contact {
 
-/// Balanced kd-tree over points. Every subtree halves the points of its parent along their longest extent and keeps
-/// their bounding box, so a query descends only where boxes overlap. Building runs in parallel; queries may run side by
-/// side without locks.
+/// Balanced kd-tree over points, each with a reach of its own. Every subtree halves the points of its parent along
+/// their longest extent and keeps the bounding box of all that they reach, so a query descends only where boxes
+/// overlap. Building runs in parallel; queries may run side by side without locks.
 class KdTree {
  public:
-  /// Replaces the points. Memory of earlier builds is used again.
-  void build(std::span<const Vec3d> points);
+  /// Replaces the points. `reach` [length] has shape [points], or is empty: then it is zero. Memory of earlier builds
+  /// is used again.
+  void build(std::span<const Vec3d> points, std::span<const double> reach = {});
 
-  /// Calls visit(i) for every point i of the build that lies in the box, bounds included, in no particular order.
+  /// Calls visit(i) for every point i of the build that lies in the box when this is grown by the point's reach, bounds
+  /// included, in no particular order.
   template <class Visit>
   void query(const Box& box, const Visit& visit) const {
     if (points_.empty()) {
@@ -35,7 +37,7 @@ class KdTree {
       const Index left = 2 * t.number + 1;
       if (left >= static_cast<Index>(boxes_.size())) {
         for (Index i = t.begin; i < t.end; ++i) {
-          if (box.contains(points_[at(i)])) {
+          if (box.grown(reach_[at(i)]).contains(points_[at(i)])) {
             visit(order_[at(i)]);
           }
         }
@@ -62,7 +64,9 @@ class KdTree {
   std::vector<Box> boxes_;     // [subtrees], level by level
   std::vector<Index> order_;   // [points]: index given to build
   std::vector<Vec3d> points_;  // [points], in tree order
+  std::vector<double> reach_;  // [points], in tree order
   std::span<const Vec3d> given_;
+  std::span<const double> given_reach_;
 };
 
 }  // namespace fexp::contact

@@ -11,7 +11,7 @@
 namespace fexp::model {
 
 /// A node's penalty stiffness is c^2 m / dt^2 with the model's first critical step dt and this c. A pair's stiffness is
-/// the series combination of both sides', so omega_p dt <= 0.3 for a pair, which keeps a bounce's energy within 2 %.
+/// the series combination of both sides', so omega_p dt <= 0.3 for a pair, which keeps a bounce's energy within 2.3 %.
 inline constexpr double penalty_courant = 0.3;
 
 /// Freezes a description and the meshes of its bodies (one per body, in order) into a model. Everything wrong is added

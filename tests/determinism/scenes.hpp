@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cluster/simulation.hpp"
+#include "support/descriptions.hpp"
+
+/// Small scenes that meet as much of the solver as possible in a few hundred steps.
+namespace fexp::test {
+
+inline const physics::LinearElastic rubber{1000.0, 1.0e6, 0.4};
+
+inline model::CubedSphere sphere(double radius, int cells) {
+  model::CubedSphere s;
+  s.radius = radius;
+  s.cells = cells;
+  return s;
+}
+
+inline model::Plate plate(double side, int cells) {
+  model::Plate p;
+  p.length_x = p.length_y = side;
+  p.cells_x = p.cells_y = cells;
+  return p;
+}
+
+inline model::Description with_contact(double thickness) {
+  model::Description d = description(rubber, thickness);
+  d.contact.enabled = true;
+  return d;
+}
+
+/// Two pairs of spheres that meet, rebound and part. Each is large enough for several pieces of parallel work.
+inline model::Description two_pairs_of_spheres() {
+  model::Description d = with_contact(0.02);
+  for (int i = 0; i < 4; ++i) {
+    model::BodyDescription& body = add_body(d, "sphere " + std::to_string(i), sphere(0.5, 9));
+    const double side = i % 2 == 0 ? -1.0 : 1.0;
+    body.translate = {0.54 * side, i / 2 * 2.5, 0.03 * side};
+    body.velocity = {-6.0 * side, 0.5 * side, 0.1 * i};
+    body.angular_velocity = {0.0, 2.0 * side, 1.0};
+  }
+  return d;
+}
+
+/// A sphere thrown onto a plate with a clamped and a driven edge, everything under gravity and pressure with curves, a
+/// rigid plane below. The load that sets in suddenly has epochs rolled back.
+inline model::Description sphere_on_plate() {
+  model::Description d = with_contact(0.02);
+  add_body(d, "plate", plate(2.0, 20));
+  model::BodyDescription& ball = add_body(d, "ball", sphere(0.4, 8));
+  ball.translate = {0.9, 1.1, 0.43};
+  ball.velocity = {0.5, 0.0, -4.0};
+  ball.rotate.push_back({{1.0, 1.0, 0.0}, 20.0, {0.9, 1.1, 0.0}});
+  d.curves.push_back({"blow", {{0.0, 0.0}, {0.02, 0.1}, {0.021, 40.0}, {0.05, 0.0}}, {}});
+  d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
+  d.gravity.push_back({{3.0, -2.0, -60.0}, "blow", {}});
+  d.pressure.push_back({{"ball"}, "", 20.0, "blow", {}});
+  d.planes.push_back({"floor", {0.0, 0.0, -0.05}, {0.0, 0.1, 1.0}, -1.0, {}});
+  add_box_set(d, "left", {-0.01, -0.01, -0.01}, {0.01, 2.01, 0.01});
+  add_box_set(d, "right", {1.99, -0.01, -0.01}, {2.01, 2.01, 0.01});
+  fix(d, "left", {"x", "y", "z", "rx", "ry", "rz"});
+  d.prescribed.push_back({"right", "z", -0.3, "blow", {}});
+  d.symmetry.push_back({"right", {0.0, 1.0, 0.0}, {}});
+  d.run.damping = 2.0;
+  d.run.energy_drift_limit = 1.0;
+  return d;
+}
+
+/// A tube thrown against a plane so hard that its inner side meets itself.
+inline model::Description tube_that_folds() {
+  model::Description d = with_contact(0.03);
+  model::Cylinder mesh;
+  mesh.radius = 0.3;
+  mesh.length = 1.0;
+  mesh.cells_around = 40;
+  mesh.cells_along = 14;
+  model::BodyDescription& tube = add_body(d, "tube", mesh);
+  tube.rotate.push_back({{1.0, 0.0, 0.0}, 90.0, {}});
+  tube.translate = {0.0, 0.0, 0.33};
+  tube.velocity = {0.0, 0.0, -14.0};
+  d.planes.push_back({"ground", {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, -1.0, {}});
+  d.run.energy_drift_limit = 1.0;
+  return d;
+}
+
+/// Many small spheres on their way to each other: islands join and part, bodies are shared out among threads.
+inline model::Description swarm() {
+  model::Description d = with_contact(0.02);
+  for (int i = 0; i < 27; ++i) {
+    model::BodyDescription& body = add_body(d, "sphere " + std::to_string(i), sphere(0.2, 2));
+    const Vec3d place{0.46 * (i % 3 - 1), 0.46 * (i / 3 % 3 - 1), 0.46 * (i / 9 - 1)};
+    body.translate = place;
+    body.velocity = -6.0 * place;
+    body.angular_velocity = {1.0, 0.3 * i, -2.0};
+  }
+  return d;
+}
+
+/// What must be the same however a scene is computed, and what proves that the scene is worth computing.
+struct Outcome {
+  std::uint64_t state_hash{};
+  std::vector<solve::HashRecord> hashes;
+  cluster::RunExtremes extremes;
+  std::size_t own_sides{};  ///< Sides between nodes and triangles of one body, seen at ends of epochs
+};
+
+inline Outcome run_scene(const model::Model& model, double duration, solve::KernelChoice kernel,
+                         std::int64_t hash_every = 16) {
+  cluster::Simulation simulation(model, kernel);
+  Outcome outcome;
+  while (simulation.state().time < duration) {
+    const cluster::EpochReport report = simulation.run_epoch(duration, hash_every);
+    EXPECT_EQ(report.fault.kind, cluster::FaultKind::none) << report.fault.message;
+    if (report.fault.kind != cluster::FaultKind::none) {
+      break;
+    }
+    outcome.hashes.insert(outcome.hashes.end(), report.hashes.begin(), report.hashes.end());
+    for (const auto& sides : simulation.state().sides) {
+      for (const model::ContactSide& side : sides) {
+        const Index body = model.blocks[at(model.element_block[at(side.element)])].body;
+        outcome.own_sides += model.node_body[at(side.node)] == body ? 1U : 0U;
+      }
+    }
+  }
+  outcome.state_hash = model::state_hash(model, simulation.state());
+  outcome.extremes = simulation.extremes();
+  return outcome;
+}
+
+}  // namespace fexp::test

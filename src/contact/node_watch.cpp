@@ -29,17 +29,27 @@ void NodeWatch::look(Index node, std::span<const Index> candidates, std::span<co
                      std::vector<model::ContactSide>& remembered, std::vector<ActivePair>& active) {
   node_ = node;
   point_ = now_(node);
-  gather(candidates, memory);
-  measure();
-  if (watched_.empty()) {
-    return;
+  if (still_ && !memory.empty()) {
+    recall(memory);
+  } else {
+    gather(candidates, memory);
+    measure();
+    decide_sides(memory);
   }
-  decide_sides(memory);
   for (const Watched& w : watched_) {
     remembered.push_back({node_, w.element, static_cast<std::int8_t>(w.side)});
   }
   leave_one_of_smooth_neighbours();
   push(active);
+}
+
+/// The pairs as they were left: when nothing has moved since, they push as they did.
+void NodeWatch::recall(std::span<const model::ContactSide> memory) {
+  watched_.clear();
+  for (const model::ContactSide& known : memory) {
+    watched_.push_back(measured(known.element));
+    watched_.back().side = known.side;
+  }
 }
 
 /// Candidates, remembered elements, and those on to which the node has slid from a remembered one that it has come

@@ -31,7 +31,10 @@ struct ActivePair {
 /// so that nothing pushes in a mesh as it was built.
 class NodeWatch {
  public:
-  NodeWatch(const model::Model& model, Positions now, Positions before) : model_(model), now_(now), before_(before) {}
+  /// Where `before` is `now`, nothing has moved since the sides were remembered. They are then taken as they are, so
+  /// that a state gives the same forces and sides however often it is looked at.
+  NodeWatch(const model::Model& model, Positions now, Positions before)
+      : model_(model), now_(now), before_(before), still_(before.back == now.back) {}
 
   /// Looks at `node`, which has `candidates` and `memory` (sides of this node's pairs at the last step; both ascending
   /// in element). Appends what is remembered now to `remembered` and pairs with a force to `active`.
@@ -55,6 +58,7 @@ class NodeWatch {
     [[nodiscard]] bool is_through(int home) const noexcept { return !rim && view.agreed && view.side != home; }
   };
 
+  void recall(std::span<const model::ContactSide> memory);
   void gather(std::span<const Index> candidates, std::span<const model::ContactSide> memory);
   void follow(const model::ContactSide& known);
   void measure();
@@ -71,6 +75,7 @@ class NodeWatch {
   const model::Model& model_;
   Positions now_;
   Positions before_;
+  bool still_{};
   Index node_{};
   Vec3d point_;
   std::vector<Index> elements_;

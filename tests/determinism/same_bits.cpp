@@ -26,13 +26,13 @@ std::ostream& operator<<(std::ostream& out, const Scene& scene) { return out << 
 
 const std::vector<Scene>& scenes() {
   static const std::vector<Scene> all{
-      {"two_pairs_of_spheres", test::two_pairs_of_spheres, 0.05,
+      {"two_pairs_of_spheres", test::two_pairs_of_spheres, 0.2,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 20 && o.extremes.most_islands == 4; }},
       {"sphere_on_plate", test::sphere_on_plate, 0.05,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.extremes.rollbacks > 0; }},
       {"tube_that_folds", test::tube_that_folds, 0.06,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.own_sides > 0; }},
-      {"swarm", test::swarm, 0.04,
+      {"swarm", test::swarm, 0.1,
        [](const test::Outcome& o) {
          return o.extremes.most_active_pairs > 20 && o.extremes.most_islands > o.extremes.fewest_islands;
        }},
@@ -183,6 +183,7 @@ TEST_P(same_bits, when_an_island_goes_on_from_its_bytes_alone) {
 TEST(roll_back, in_contact_ends_in_the_state_of_an_epoch_planned_shorter_from_the_start) {
   model::Description d = test::two_pairs_of_spheres();
   for (model::BodyDescription& body : d.bodies) {
+    body.translate.x *= 0.65;
     body.velocity = {};
   }
   d.curves.push_back({"jolt", {{0.02, 0.0}, {0.021, 1.0}}, {}});
@@ -199,7 +200,7 @@ TEST(roll_back, in_contact_ends_in_the_state_of_an_epoch_planned_shorter_from_th
   model::Model other = model;
   cluster::Simulation one(model, KernelChoice::automatic), two(other, KernelChoice::automatic);
   int compared = 0;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 40 && compared < 2; ++i) {
     const cluster::EpochReport first = one.run_epoch(1.0);
     ASSERT_EQ(first.fault.kind, cluster::FaultKind::none) << first.fault.message;
     other.run.epoch_steps = first.steps;
@@ -211,7 +212,7 @@ TEST(roll_back, in_contact_ends_in_the_state_of_an_epoch_planned_shorter_from_th
     ASSERT_EQ(model::state_hash(model, one.state()), model::state_hash(other, two.state())) << "epoch " << i;
     compared += first.rollbacks > 0 && second.rollbacks == 0 && first.active_pairs > 0 ? 1 : 0;
   }
-  EXPECT_GT(compared, 0);
+  EXPECT_EQ(compared, 2);
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ inline model::Plate plate(double side, int cells) {
 inline model::Description with_contact(double thickness) {
   model::Description d = description(rubber, thickness);
   d.contact.enabled = true;
+  d.run.epoch_steps = 16;
   return d;
 }
 
@@ -38,7 +39,7 @@ inline model::Description two_pairs_of_spheres() {
   for (int i = 0; i < 4; ++i) {
     model::BodyDescription& body = add_body(d, "sphere " + std::to_string(i), sphere(0.5, 9));
     const double side = i % 2 == 0 ? -1.0 : 1.0;
-    body.translate = {0.54 * side, i / 2 * 2.5, 0.03 * side};
+    body.translate = {0.8 * side, i / 2 * 2.5, 0.03 * side};
     body.velocity = {-6.0 * side, 0.5 * side, 0.1 * i};
     body.angular_velocity = {0.0, 2.0 * side, 1.0};
   }
@@ -89,9 +90,10 @@ inline model::Description tube_that_folds() {
 /// Many small spheres on their way to each other: islands join and part, bodies are shared out among threads.
 inline model::Description swarm() {
   model::Description d = with_contact(0.02);
+  d.run.epoch_steps = 4;
   for (int i = 0; i < 27; ++i) {
     model::BodyDescription& body = add_body(d, "sphere " + std::to_string(i), sphere(0.2, 2));
-    const Vec3d place{0.46 * (i % 3 - 1), 0.46 * (i / 3 % 3 - 1), 0.46 * (i / 9 - 1)};
+    const Vec3d place{0.6 * (i % 3 - 1), 0.6 * (i / 3 % 3 - 1), 0.6 * (i / 9 - 1)};
     body.translate = place;
     body.velocity = -6.0 * place;
     body.angular_velocity = {1.0, 0.3 * i, -2.0};

@@ -37,7 +37,7 @@ inline model::Description with_contact(double thickness) {
 inline model::Description two_pairs_of_spheres() {
   model::Description d = with_contact(0.02);
   for (int i = 0; i < 4; ++i) {
-    model::BodyDescription& body = add_body(d, "sphere " + std::to_string(i), sphere(0.5, 9));
+    model::BodyDescription& body = add_body(d, "sphere " + std::to_string(i), sphere(0.5, 7));
     const double side = i % 2 == 0 ? -1.0 : 1.0;
     body.translate = {0.8 * side, i / 2 * 2.5, 0.03 * side};
     body.velocity = {-6.0 * side, 0.5 * side, 0.1 * i};

@@ -11,6 +11,10 @@
 
 #ifdef FEXP_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
+/// Before a function's body: its own reads and writes are not looked at, those of functions it calls are.
+#define FEXP_UNSEEN_BY_THREAD_SANITIZER __attribute__((no_sanitize("thread")))
+#else
+#define FEXP_UNSEEN_BY_THREAD_SANITIZER
 #endif
 
 namespace fexp::parallel {

@@ -17,6 +17,17 @@
 /// writes may not, so every result is the same for any number of threads.
 namespace fexp::parallel {
 
+namespace detail {
+
+template <class Body>
+void run_piece(ForkJoin& fork_join, const Body& body, const tbb::blocked_range<Index>& piece) {
+  fork_join.begin_piece();
+  body(piece.begin(), piece.end());
+  fork_join.end_piece();
+}
+
+}  // namespace detail
+
 /// Runs body(begin, end) over [0, count) cut into pieces of at least `grain`; runs in the calling thread when there is
 /// only one piece.
 template <class Body>
@@ -29,12 +40,10 @@ void for_ranges(Index count, Index grain, const Body& body) {
     return;
   }
   ForkJoin fork_join;
+  // What the lambda holds is copied by oneTBB from task to task, before the sanitizer can be told that a piece begins.
   tbb::parallel_for(tbb::blocked_range<Index>(0, count, static_cast<std::size_t>(grain)),
-                    [&](const tbb::blocked_range<Index>& piece) {
-                      fork_join.begin_piece();
-                      body(piece.begin(), piece.end());
-                      fork_join.end_piece();
-                    });
+                    [&](const tbb::blocked_range<Index>& piece)
+                        FEXP_UNSEEN_BY_THREAD_SANITIZER { detail::run_piece(fork_join, body, piece); });
 }
 
 /// Runs body(i) for each i in [0, count).

@@ -13,7 +13,7 @@ namespace {
 /// The skin as a part of the mean element size: larger means fewer searches and more candidates.
 constexpr double skin_part = 0.4;
 /// A search is due when this part of the skin is used up, however it was measured.
-constexpr double worn_part = 0.5;
+constexpr double worn_part = 0.8;
 constexpr Index rows_per_piece = 64;
 constexpr Index piece_grain = 4;
 constexpr Index node_grain = 4096;

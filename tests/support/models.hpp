@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <string_view>
 #include <vector>
 
 #include "model/state.hpp"
@@ -11,6 +12,17 @@
 
 /// Small models for tests, ready to step.
 namespace fexp::test {
+
+/// The nodes of a set; no such set fails the test.
+inline std::vector<Index> nodes_of(const model::Model& model, std::string_view set) {
+  for (const model::NamedNodes& named : model.node_sets) {
+    if (named.name == set) {
+      return named.nodes;
+    }
+  }
+  ADD_FAILURE() << "no set " << set;
+  return {};
+}
 
 /// One island of all bodies, stepped directly: the step is the test's, and no guard interferes.
 class DirectRun {

@@ -31,6 +31,7 @@ class SectionReader {
     const TomlValue* value = section(name, fmt::format("[[{}]]", name), meaning, presence);
     const TomlArray* items = value == nullptr ? nullptr : fields_.as_list_of_tables(*value, name);
     if (items == nullptr) {
+      complete_ = complete_ && value == nullptr;
       return;
     }
     if (items->empty() && presence == Presence::required) {
@@ -45,8 +46,12 @@ class SectionReader {
   /// Reports keys of the root that are neither sections nor `others`.
   void check_keys(std::vector<std::string> others) {
     names_.insert(names_.begin(), others.begin(), others.end());
-    fields_.check_keys(root_, "", names_);
+    fields_.noting_faults({{}, 0, 0}, [&] { fields_.check_keys(root_, "", names_); });
+    complete_ = complete_ && !fields_.is_faulty({{}, 0, 0});
   }
+
+  /// Whether every section was found where it belongs.
+  [[nodiscard]] bool complete() const noexcept { return complete_; }
 
  private:
   const TomlValue* section(const std::string& name, const std::string& header, std::string_view meaning,
@@ -62,6 +67,7 @@ class SectionReader {
   }
 
   void missing(int line, int column, const std::string& header, std::string_view meaning) {
+    complete_ = false;
     fields_.add(line, column, fmt::format("the deck has no {}", header), header + " at least once",
                 fmt::format("add {}: {}", header, meaning));
   }
@@ -72,22 +78,47 @@ class SectionReader {
   }
   /// A material's parameters stand beside its name.
   void read_item(const TomlValue& item, const std::string& path, model::Material& out) {
-    if (const TomlTable* entries = fields_.as_table(item, path)) {
-      fields_.members(item, *entries, path, out);
-      fields_.alternative(item, path, "law", Presence::optional, out.law, field_names<model::Material>());
-    }
+    out.place = fields_.place(item);
+    fields_.noting_faults(item, [&] {
+      if (const TomlTable* entries = fields_.as_table(item, path)) {
+        fields_.members(item, *entries, path, out);
+        fields_.alternative(item, path, "law", Presence::optional, out.law, field_names<model::Material>());
+      }
+    });
   }
   void read_item(const TomlValue& item, const std::string& path, model::BodyDescription& out) {
     fields_.table(item, path, out);
     const auto* entries = std::get_if<TomlTable>(&item.value);
     const TomlEntry* mesh = entries == nullptr ? nullptr : find_entry(*entries, "mesh");
-    out.mesh_place = mesh == nullptr ? out.place : fields_.place(mesh->value.line, mesh->value.column);
+    out.mesh_place = mesh == nullptr ? out.place : fields_.place(mesh->value);
   }
 
   const TomlTable& root_;
   FieldReader& fields_;
   std::vector<std::string> names_;
+  bool complete_{true};
 };
+
+template <class Named>
+bool all_named(const std::vector<Named>& items) {
+  return std::none_of(items.begin(), items.end(), [](const Named& item) { return item.name.empty(); });
+}
+
+/// No model is built from a deck with errors, so what is wrong between its tables is told at once, too: of tables that
+/// could be read, when all that they may refer to is known by name.
+void add_reference_errors(const model::Description& d, const FieldReader& fields, ErrorList& errors) {
+  if (fields.is_full() || !all_named(d.curves) || !all_named(d.materials) || !all_named(d.sections) ||
+      !all_named(d.bodies) || !all_named(d.node_sets)) {
+    return;
+  }
+  ErrorList found;
+  model::check_description(d, found);
+  for (const InputError& error : found.errors()) {
+    if (!fields.is_faulty(error.place)) {
+      errors.add(error);
+    }
+  }
+}
 
 bool stands_before(const InputError& a, const InputError& b) {
   return a.place.line != b.place.line ? a.place.line < b.place.line : a.place.column < b.place.column;
@@ -107,6 +138,9 @@ Deck parse_deck(std::string_view text, const std::string& file, ErrorList& error
     }
     for_each_section(deck, sections);
     sections.check_keys({"title"});
+    if (!found.empty() && sections.complete()) {
+      add_reference_errors(deck.description, fields, found);
+    }
   }
   std::vector<InputError> sorted = found.errors();
   std::stable_sort(sorted.begin(), sorted.end(), stands_before);

@@ -48,7 +48,8 @@ struct Deck {
 };
 
 /// Reads a deck from text. `file` is the name used in errors. Everything wrong is added to `errors`; the deck is usable
-/// only when nothing was. Mesh files are not read here.
+/// only when nothing was. Mesh files are not read here. References from one table to another are left to
+/// model::build_model, unless something else is wrong and no model will be built.
 [[nodiscard]] Deck parse_deck(std::string_view text, const std::string& file, ErrorList& errors);
 
 /// Generates or reads the mesh of every body, in order; a path is relative to `directory`, that of the deck. A body

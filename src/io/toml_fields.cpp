@@ -38,9 +38,8 @@ std::string did_you_mean(std::string_view wanted, std::span<const std::string> k
 std::string one_of(Choices choices) { return fmt::format("one of {}", fmt::join(choices, ", ")); }
 
 void FieldReader::add(int line, int column, std::string message, std::string accepted, std::string cure) {
-  constexpr std::size_t most_errors = 100;
-  if (errors_.size() < most_errors) {
-    errors_.add(place(line, column), std::move(message), std::move(accepted), std::move(cure));
+  if (!is_full()) {
+    errors_.add({file_, line, column}, std::move(message), std::move(accepted), std::move(cure));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,20 +26,34 @@ class FieldReader {
   /// Reads all fields from a table. Keys that are neither fields nor `others` are errors.
   template <HasFields Struct>
   void table(const TomlValue& value, const std::string& path, Struct& out, std::span<const std::string> others = {}) {
-    if (const TomlTable* entries = as_table(value, path)) {
-      members(value, *entries, path, out);
-      std::vector<std::string> known = field_names<Struct>();
-      known.insert(known.end(), others.begin(), others.end());
-      check_keys(*entries, path, known);
+    if constexpr (requires { out.place; }) {
+      out.place = place(value);
+    }
+    noting_faults(value, [&] {
+      if (const TomlTable* entries = as_table(value, path)) {
+        members(value, *entries, path, out);
+        std::vector<std::string> known = field_names<Struct>();
+        known.insert(known.end(), others.begin(), others.end());
+        check_keys(*entries, path, known);
+      }
+    });
+  }
+
+  /// Calls `read`, and notes the value's place when that added an error.
+  template <class Read>
+  void noting_faults(const TomlValue& value, const Read& read) {
+    const std::size_t before = errors_.size();
+    read();
+    if (errors_.size() != before) {
+      faulty_.emplace(value.line, value.column);
     }
   }
+  /// Whether reading the table at that place added errors.
+  [[nodiscard]] bool is_faulty(const Place& table) const { return faulty_.contains({table.line, table.column}); }
 
   /// Reads all fields from a table's entries, whatever else is there.
   template <HasFields Struct>
   void members(const TomlValue& value, const TomlTable& entries, const std::string& path, Struct& out) {
-    if constexpr (requires { out.place; }) {
-      out.place = place(value.line, value.column);
-    }
     for_each_field<Struct>([&](const auto& field) {
       const TomlEntry* entry = find_entry(entries, field.name);
       const Limits limits{field.range, field.choices};
@@ -127,10 +142,14 @@ class FieldReader {
     }
   }
 
-  [[nodiscard]] Place place(int line, int column) const { return {file_, line, column}; }
+  [[nodiscard]] Place place(const TomlValue& value) const { return {file_, value.line, value.column}; }
   void add(int line, int column, std::string message, std::string accepted, std::string cure);
+  /// Whether so many errors were found that no more are taken.
+  [[nodiscard]] bool is_full() const noexcept { return errors_.size() >= most_errors; }
 
  private:
+  static constexpr std::size_t most_errors = 100;
+
   void wrong_type(const TomlValue& value, const std::string& path, const std::string& accepted);
   void missing_key(const TomlValue& table, const std::string& path, std::string_view key, const std::string& accepted,
                    std::string_view meaning);
@@ -142,6 +161,7 @@ class FieldReader {
 
   std::string file_;
   ErrorList& errors_;
+  std::set<std::pair<int, int>> faulty_;  // line, column
 };
 
 }  // namespace fexp::io

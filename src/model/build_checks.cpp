@@ -70,6 +70,41 @@ void check_section_name(const std::vector<std::string>& sections, const std::str
   }
 }
 
+/// Sets and curves that conditions and loads name are there.
+class ReferenceChecks {
+ public:
+  ReferenceChecks(const Description& description, ErrorList& errors)
+      : sets_(names_of(description.node_sets)), curves_(names_of(description.curves)), errors_(errors) {
+    sets_.insert(sets_.begin(), "all");
+  }
+
+  template <class Condition>
+  void operator()(const std::vector<Condition>& conditions) {
+    for (const Condition& condition : conditions) {
+      if constexpr (requires { condition.set; }) {
+        check("node set", condition.set, sets_, condition.place);
+      }
+      if constexpr (requires { condition.curve; }) {
+        if (!condition.curve.empty()) {
+          check("curve", condition.curve, curves_, condition.place);
+        }
+      }
+    }
+  }
+
+ private:
+  void check(std::string_view kind, const std::string& name, const std::vector<std::string>& known,
+             const Place& place) {
+    if (!contains(known, name)) {
+      errors_.add(place, fmt::format("there is no {} \"{}\"", kind, name), name_list(known),
+                  "define it or correct the name");
+    }
+  }
+
+  std::vector<std::string> sets_, curves_;
+  ErrorList& errors_;
+};
+
 void check_placement(const BodyDescription& body, ErrorList& errors) {
   for (const Rotation& rotation : body.rotate) {
     if (!has_direction(rotation.axis)) {
@@ -199,6 +234,13 @@ void check_description(const Description& description, ErrorList& errors) {
                  "a vector that is not zero", "correct the normal");
     }
   }
+  ReferenceChecks references(description, errors);
+  references(description.fixed);
+  references(description.prescribed);
+  references(description.symmetry);
+  references(description.gravity);
+  references(description.pressure);
+  references(description.forces);
 }
 
 void check_symmetry(const Description& description, const Model& model, ErrorList& errors) {

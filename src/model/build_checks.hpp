@@ -18,8 +18,8 @@ namespace fexp::model {
 [[nodiscard]] std::string name_list(std::span<const std::string> names);
 
 /// Reports what is wrong with a description whatever its meshes are: names given twice or missing, references to
-/// materials and sections that are not there, vectors without direction, copies on top of each other, curves whose
-/// times fall.
+/// materials, sections, curves and node sets that are not there, vectors without direction, copies on top of each
+/// other, curves whose times fall.
 void check_description(const Description& description, ErrorList& errors);
 
 /// Reports conditions that contradict each other at a node: a symmetry plane there and a degree of freedom that is

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
@@ -12,58 +13,37 @@ namespace fexp::model {
 
 namespace {
 
-/// Looks sets and curves up by name while conditions are expanded.
+/// Looks sets and curves up by name while conditions are expanded; check_description has found them all.
 class Lookup {
  public:
-  Lookup(const Model& model, ErrorList& errors) : model_(model), errors_(errors) {}
+  explicit Lookup(const Model& model) : model_(model) {}
 
-  const std::vector<Index>& nodes(const std::string& set, const Place& place) {
-    for (const NamedNodes& named : model_.node_sets) {
-      if (named.name == set) {
-        return named.nodes;
-      }
-    }
-    errors_.add(place, fmt::format("there is no node set \"{}\"", set), names_of(model_.node_sets),
-                "define it or correct the name");
-    return none_;
+  [[nodiscard]] const std::vector<Index>& nodes(const std::string& set) const {
+    const auto found = std::find_if(model_.node_sets.begin(), model_.node_sets.end(),
+                                    [&](const NamedNodes& named) { return named.name == set; });
+    assert(found != model_.node_sets.end());
+    return found->nodes;
   }
-  Index curve(const std::string& name, const Place& place) {
-    if (name.empty()) {
-      return no_index;
-    }
-    for (std::size_t i = 0; i < model_.curves.size(); ++i) {
-      if (model_.curves[i].name == name) {
-        return static_cast<Index>(i);
-      }
-    }
-    errors_.add(place, fmt::format("there is no curve \"{}\"", name), names_of(model_.curves),
-                "define it or correct the name");
-    return no_index;
+  /// The curve of that name; none for an empty name.
+  [[nodiscard]] Index curve(const std::string& name) const {
+    const auto found = std::find_if(model_.curves.begin(), model_.curves.end(),
+                                    [&](const Curve& curve) { return curve.name == name; });
+    assert(name.empty() || found != model_.curves.end());
+    return name.empty() ? no_index : static_cast<Index>(found - model_.curves.begin());
   }
 
  private:
-  template <class Named>
-  static std::string names_of(const std::vector<Named>& items) {
-    std::vector<std::string> names;
-    for (const Named& item : items) {
-      names.push_back(item.name);
-    }
-    return name_list(names);
-  }
-
   const Model& model_;
-  ErrorList& errors_;
-  std::vector<Index> none_;
 };
 
-void build_fixed(const Description& description, Lookup& lookup, Model& model) {
+void build_fixed(const Description& description, const Lookup& lookup, Model& model) {
   std::vector<std::uint8_t> masks(model.reference_position.size(), 0);
   for (const Fixed& fixed : description.fixed) {
     unsigned mask = 0;
     for (const std::string& dof : fixed.dofs) {
       mask |= 1U << static_cast<unsigned>(dof_index(dof));
     }
-    for (const Index n : lookup.nodes(fixed.set, fixed.place)) {
+    for (const Index n : lookup.nodes(fixed.set)) {
       masks[at(n)] = static_cast<std::uint8_t>(masks[at(n)] | mask);
     }
   }
@@ -76,27 +56,26 @@ void build_fixed(const Description& description, Lookup& lookup, Model& model) {
 
 /// The condition that already holds degree of freedom `dof` of the node: of the fixed ones, or of the first `count`
 /// prescribed ones.
-std::string holder_of(const Description& description, Lookup& lookup, std::size_t count, Index node, Index dof) {
-  const auto holds = [&](const std::string& set, const Place& place) {
-    const std::vector<Index>& nodes = lookup.nodes(set, place);
+std::string holder_of(const Description& description, const Lookup& lookup, std::size_t count, Index node, Index dof) {
+  const auto holds = [&](const std::string& set) {
+    const std::vector<Index>& nodes = lookup.nodes(set);
     return std::binary_search(nodes.begin(), nodes.end(), node);
   };
   for (const Fixed& fixed : description.fixed) {
-    if (std::find(fixed.dofs.begin(), fixed.dofs.end(), dof_names[at(dof)]) != fixed.dofs.end() &&
-        holds(fixed.set, fixed.place)) {
+    if (std::find(fixed.dofs.begin(), fixed.dofs.end(), dof_names[at(dof)]) != fixed.dofs.end() && holds(fixed.set)) {
       return fmt::format("fixed by set \"{}\"", fixed.set);
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Prescribed& p = description.prescribed[i];
-    if (dof_index(p.dof) == dof && holds(p.set, p.place)) {
+    if (dof_index(p.dof) == dof && holds(p.set)) {
       return fmt::format("prescribed by set \"{}\"", p.set);
     }
   }
   return {};
 }
 
-void build_prescribed(const Description& description, Lookup& lookup, Model& model, ErrorList& errors) {
+void build_prescribed(const Description& description, const Lookup& lookup, Model& model, ErrorList& errors) {
   std::vector<std::uint8_t> held(model.reference_position.size(), 0);
   for (const FixedNode& fixed : model.fixed) {
     held[at(fixed.node)] = fixed.mask;
@@ -105,9 +84,9 @@ void build_prescribed(const Description& description, Lookup& lookup, Model& mod
     const Prescribed& p = description.prescribed[i];
     const Index dof = dof_index(p.dof);
     const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(dof));
-    const Index curve = lookup.curve(p.curve, p.place);
+    const Index curve = lookup.curve(p.curve);
     bool reported = false;
-    for (const Index n : lookup.nodes(p.set, p.place)) {
+    for (const Index n : lookup.nodes(p.set)) {
       if ((held[at(n)] & bit) != 0 && !reported) {
         errors.add(p.place,
                    fmt::format("set \"{}\" prescribes {} of node {} of body \"{}\", which is already {}", p.set, p.dof,
@@ -127,12 +106,12 @@ void build_prescribed(const Description& description, Lookup& lookup, Model& mod
 
 /// Planes of symmetry as given, sorted by node. Where planes meet, a later normal is made orthogonal to the earlier
 /// ones, so that the constraints can be applied one after the other; one that adds nothing is left out.
-void build_symmetry(const Description& description, Lookup& lookup, Model& model) {
+void build_symmetry(const Description& description, const Lookup& lookup, Model& model) {
   constexpr double least_new = 1.0e-6;  // sine of the angle below which two planes are one
   std::vector<SymmetryNode> given;
   for (const Symmetry& symmetry : description.symmetry) {
     const Vec3d normal = (1.0 / norm(symmetry.normal)) * symmetry.normal;
-    for (const Index n : lookup.nodes(symmetry.set, symmetry.place)) {
+    for (const Index n : lookup.nodes(symmetry.set)) {
       given.push_back({n, normal});
     }
   }
@@ -155,14 +134,14 @@ void build_symmetry(const Description& description, Lookup& lookup, Model& model
   }
 }
 
-void build_loads(const Description& description, Lookup& lookup, Model& model) {
+void build_loads(const Description& description, const Lookup& lookup, Model& model) {
   for (const Gravity& gravity : description.gravity) {
-    model.gravity.push_back({gravity.acceleration, lookup.curve(gravity.curve, gravity.place)});
+    model.gravity.push_back({gravity.acceleration, lookup.curve(gravity.curve)});
   }
   for (const NodalForce& force : description.forces) {
-    const std::vector<Index>& nodes = lookup.nodes(force.set, force.place);
+    const std::vector<Index>& nodes = lookup.nodes(force.set);
     const double share = force.total && !nodes.empty() ? 1.0 / static_cast<double>(nodes.size()) : 1.0;
-    const Index curve = lookup.curve(force.curve, force.place);
+    const Index curve = lookup.curve(force.curve);
     for (const Index n : nodes) {
       model.forces.push_back({n, share * force.force, share * force.moment, curve});
     }
@@ -172,9 +151,9 @@ void build_loads(const Description& description, Lookup& lookup, Model& model) {
 }
 
 void build_pressure(const Description& description, std::span<const Mesh> meshes, const BodyNames& names,
-                    Lookup& lookup, Model& model, ErrorList& errors) {
+                    const Lookup& lookup, Model& model, ErrorList& errors) {
   for (const Pressure& pressure : description.pressure) {
-    const Index curve = lookup.curve(pressure.curve, pressure.place);
+    const Index curve = lookup.curve(pressure.curve);
     const std::size_t before = model.pressure.size(), errors_before = errors.size();
     std::vector<std::string> known;
     for (const Index b : names.find(pressure.bodies, pressure.place, "a pressure", errors)) {
@@ -227,7 +206,7 @@ void build_conditions(const Description& description, std::span<const Mesh> mesh
   for (const NodeSet& set : description.node_sets) {
     model.node_sets.push_back({set.name, select_nodes(set, meshes, model, names, errors)});
   }
-  Lookup lookup(model, errors);
+  const Lookup lookup(model);
   build_fixed(description, lookup, model);
   build_prescribed(description, lookup, model, errors);
   build_symmetry(description, lookup, model);

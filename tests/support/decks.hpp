@@ -6,7 +6,7 @@
 /// Decks for tests of the parser.
 namespace fexp::test {
 
-/// A deck that uses every section and every kind of value.
+/// A deck that uses every section and every kind of value, and of which a model can be built.
 inline const std::string full_deck = R"(title = "everything"
 
 [units]
@@ -73,7 +73,7 @@ box = { low = [0, 0, -21], high = [0, 3, -19] }
 
 [[node_set]]
 name = "shells"
-group = "g"
+bodies = ["ball"]
 
 [[fixed]]
 set = "edge"
@@ -83,7 +83,7 @@ set = "edge"
 dofs = ["x", "rz"]
 
 [[prescribed]]
-set = "edge"
+set = "shells"
 dof = "y"
 velocity = 3
 curve = "ramp"

@@ -114,7 +114,8 @@ TEST(deck, sets_conditions_and_loads_are_read) {
   EXPECT_TRUE(d.node_sets[0].boundary);
   EXPECT_EQ(d.node_sets[0].box.value_or(model::BoxSelection{}).low, (Vec3d{0.0, 0.0, -21.0}));
   EXPECT_EQ(d.node_sets[0].box.value_or(model::BoxSelection{}).high, (Vec3d{0.0, 3.0, -19.0}));
-  EXPECT_EQ(d.node_sets[1].group, "g");
+  EXPECT_EQ(d.node_sets[1].bodies, std::vector<std::string>{"ball"});
+  EXPECT_FALSE(d.node_sets[1].box.has_value());
   ASSERT_EQ(d.fixed.size(), 2U);
   EXPECT_EQ(d.fixed[0].set, "edge");
   EXPECT_EQ(d.fixed[0].dofs.size(), 6U);
@@ -135,6 +136,37 @@ TEST(deck, sets_conditions_and_loads_are_read) {
   EXPECT_EQ(d.forces[0].force, (Vec3d{1.0, 0.0, 0.0}));
   EXPECT_EQ(d.forces[0].moment, (Vec3d{0.0, 1.0, 0.0}));
   EXPECT_TRUE(d.forces[0].total);
+}
+
+TEST(deck, physical_groups_of_sets_and_mesh_files_are_read) {
+  const Deck deck = parse_well(R"([run]
+duration = 1
+[[body]]
+name = "a"
+mesh.kind = "file"
+mesh.path = "a.msh"
+mesh.weld_tolerance = 0
+[[node_set]]
+name = "rim"
+group = "rim of a"
+)");
+  EXPECT_EQ(deck.description.node_sets.at(0).group, "rim of a");
+  const auto file = std::get<model::MeshFile>(deck.description.bodies.at(0).mesh);
+  EXPECT_EQ(file.path, "a.msh");
+  EXPECT_EQ(file.weld_tolerance, 0.0);
+}
+
+TEST(deck, a_model_is_built_of_it) {
+  const Deck deck = parse_well(test::full_deck);
+  ErrorList errors;
+  const std::vector<model::Mesh> meshes = load_meshes(deck, "", errors);
+  const model::Model model = model::build_model(deck.description, meshes, errors);
+  check_output(deck.output, model, errors);
+  for (const InputError& error : errors.errors()) {
+    ADD_FAILURE() << error.text();
+  }
+  EXPECT_EQ(model.body_count(), 7);
+  EXPECT_EQ(model.element_count(), 12 * 9 + 6 * 4 * 5 * 8);
 }
 
 TEST(deck, planes_and_contact_are_read) {

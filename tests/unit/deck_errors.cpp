@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "io/deck.hpp"
+#include "model/build.hpp"
 #include "support/decks.hpp"
 
 namespace fexp::io {
@@ -151,6 +152,111 @@ const Wrong wrong_decks[] = {
 
 INSTANTIATE_TEST_SUITE_P(deck_errors, WrongDeck, testing::ValuesIn(wrong_decks),
                          [](const auto& wrong) { return std::string(wrong.param.name); });
+
+TEST(deck_errors, an_empty_deck_lacks_its_run_and_a_body) {
+  const std::vector<std::string> errors = errors_of("");
+  ASSERT_EQ(errors.size(), 2U);
+  EXPECT_NE(errors[0].find("d:1:1: error: the deck has no [run]"), std::string::npos) << errors[0];
+  EXPECT_NE(errors[1].find("d:1:1: error: the deck has no [[body]]"), std::string::npos) << errors[1];
+}
+
+TEST(deck_errors, binary_files_and_other_encodings_are_no_toml) {
+  const std::string utf_16("\xff\xfe[\0r\0u\0n\0]\0", 12);
+  for (const std::string& text : {std::string("\x7f"
+                                              "ELF\x01\x02\x00",
+                                              7),
+                                  utf_16, std::string(100, '\0')}) {
+    const std::vector<std::string> errors = errors_of(text);
+    ASSERT_EQ(errors.size(), 1U);
+    EXPECT_NE(errors[0].find("no TOML"), std::string::npos) << errors[0];
+  }
+  EXPECT_NE(errors_of(utf_16).at(0).find("save the deck as UTF-8"), std::string::npos);
+}
+
+TEST(deck_errors, all_independent_errors_come_at_once_in_the_order_of_the_deck) {
+  std::string text = changed("safety = 0.8", "sfaety = 0.8");
+  const auto change = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  change("poisson = 0.3", "poisson = 0.6");
+  change("cells = 3", "cells = \"3\"");
+  change("angle_degrees = 30", "angle = 30");
+  change("dofs = [\"x\", \"rz\"]", "dofs = [\"u\", \"v\"]");
+  change("[output]", "[output]\nnods = 1");
+  const std::vector<std::string> errors = errors_of(text);
+  const std::vector<std::string> expected = {
+      "d:11:1: error: unknown key \"sfaety\"", "d:27:11: error: material.poisson is 0.6",
+      "d:36:55: error: body.mesh.cells is",    "d:39:53: error: body.rotate[2] lacks \"angle_degrees\"",
+      "d:39:73: error: unknown key \"angle\"", "d:74:9: error: fixed.dofs[1]",
+      "d:74:14: error: fixed.dofs[2]",         "d:117:1: error: unknown key \"nods\""};
+  ASSERT_EQ(errors.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(errors[i].find(expected[i]), 0U) << errors[i];
+  }
+}
+
+TEST(deck_errors, names_that_are_not_there_come_with_the_errors_of_other_tables) {
+  std::string text = changed("material = \"steel\"", "material = \"steal\"");
+  EXPECT_TRUE(errors_of(text).empty()) << "references alone are left to the model's building";
+  const auto change = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  change("safety = 0.8", "safety = 8");
+  change("acceleration = [0, 0, -9.81e-3]\ncurve = \"ramp\"", "acceleration = [0, 0, -9.81e-3]\ncurve = \"rmap\"");
+  const std::vector<std::string> errors = errors_of(text);
+  ASSERT_EQ(errors.size(), 3U);
+  EXPECT_NE(errors[0].find("run.safety"), std::string::npos);
+  EXPECT_NE(errors[1].find("names material \"steal\""), std::string::npos);
+  EXPECT_NE(errors[2].find("there is no curve \"rmap\""), std::string::npos);
+}
+
+TEST(deck_errors, one_mistake_gives_no_second_error_where_others_refer_to_it) {
+  EXPECT_EQ(errors_of(changed("[[material]]", "[[materail]]")).size(), 1U);
+  EXPECT_EQ(errors_of(changed("name = \"ramp\"", "nmae = \"ramp\"")).size(), 2U) << "the key and its lack";
+  EXPECT_EQ(errors_of(changed("normal = [1, 0, 0]", "normal = 1")).size(), 1U);
+  EXPECT_EQ(errors_of(changed("[0, 0.0]", "[0, \"0\"]")).size(), 1U);
+}
+
+TEST(deck_errors, no_more_than_a_hundred_errors_are_shown) {
+  std::string text = "[run]\nduration = 1\n";
+  for (int i = 0; i < 3000; ++i) {
+    text += "key_" + std::to_string(i) + " = 1\n";
+  }
+  EXPECT_EQ(errors_of(text).size(), 100U);
+}
+
+TEST(deck_errors, keys_of_a_million_parts_are_refused_and_not_followed) {
+  std::string key = "a";
+  for (int i = 0; i < 1000000; ++i) {
+    key += ".a";
+  }
+  for (const std::string& text : {key + " = 1", "[" + key + "]", "x = {" + key + " = 1}"}) {
+    const std::vector<std::string> errors = errors_of(text);
+    ASSERT_EQ(errors.size(), 1U);
+    EXPECT_NE(errors[0].find("nested too deep"), std::string::npos) << errors[0];
+  }
+}
+
+TEST(deck_errors, output_of_sets_and_bodies_that_are_not_there_is_told_at_its_section) {
+  ErrorList errors;
+  Deck deck = parse_deck(
+      "[run]\nduration = 1\n[[material]]\nname = \"m\"\ndensity = 1\nyoung = 1\npoisson = 0\n"
+      "[[section]]\nname = \"s\"\nmaterial = \"m\"\nthickness = 0.1\n[[body]]\nname = \"ball\"\n"
+      "section = \"s\"\nmesh = {kind = \"cubed_sphere\", radius = 1}\n"
+      "array = {count = [2, 1, 1], pitch = [3, 0, 0]}\n[output]\n"
+      "nodes = [\"all\", \"rim\"]\nbodies = [\"ball\", \"ball[1,0,0]\", \"ball[2,0,0]\"]\n",
+      "d", errors);
+  const std::vector<model::Mesh> meshes = load_meshes(deck, "", errors);
+  const model::Model model = model::build_model(deck.description, meshes, errors);
+  ASSERT_TRUE(errors.empty()) << errors.errors()[0].text();
+  check_output(deck.output, model, errors);
+  ASSERT_EQ(errors.size(), 2U);
+  EXPECT_EQ(errors.errors()[0].text(),
+            "d:17:1: error: output.nodes names node set \"rim\", which is not there; accepted: all; cure: define it or "
+            "correct the name");
+  EXPECT_NE(errors.errors()[1].text().find("d:17:1: error: output.bodies names body \"ball[2,0,0]\""),
+            std::string::npos);
+}
 
 }  // namespace
 }  // namespace fexp::io

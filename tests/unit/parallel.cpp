@@ -81,7 +81,8 @@ TEST(parallel, nested_loops_visit_every_pair_once) {
   });
 }
 
-/// Different threads that take part in a loop whose pieces wait until all of them have begun, or for a second.
+/// Different threads that take part in a loop whose pieces wait until all of them have begun, or long enough
+/// for a busy machine.
 int threads_at_work(int threads) {
   std::mutex mutex;
   std::set<std::thread::id> ids;
@@ -93,9 +94,9 @@ int threads_at_work(int threads) {
         ids.insert(std::this_thread::get_id());
       }
       ++begun;
-      const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+      const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
       while (begun < threads && std::chrono::steady_clock::now() < end) {
-        std::this_thread::yield();
+        std::this_thread::sleep_for(std::chrono::microseconds(100));
       }
     });
   });

@@ -19,13 +19,12 @@ std::string read_deck(const fs::path& path) {
   std::error_code error;
   std::string text;
   if (fs::is_directory(path, error)) {
-    errors.add({path.string()}, "cannot read the deck: it is a directory", "a TOML file", "name the deck in it");
+    errors.add({path.string()}, "cannot read: it is a directory", "a readable deck (TOML)", "name the deck in it");
   } else {
     try {
       text = io::read_whole(path);
     } catch (const io::OutputError& failure) {
-      errors.add({path.string()}, "cannot read the deck: " + failure.message(), "a readable TOML file",
-                 "check the path");
+      errors.add({path.string()}, failure.message(), "a readable deck (TOML)", "check the path");
     }
   }
   errors.throw_if_any();

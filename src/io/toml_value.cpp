@@ -71,6 +71,8 @@ void add_syntax_error(const toml::parse_error& error, const std::string& file, E
   } else if (description.find("utf-8") != std::string_view::npos ||
              description.find("overlong") != std::string_view::npos) {
     cure = "save the deck as UTF-8 text";
+  } else if (description.find("parsing string") != std::string_view::npos) {
+    cure = "end the text with a quote in the same line, and write \\\\ for a backslash in double quotes";
   } else if (description.find("could not be interpreted") != std::string_view::npos ||
              description.find("not representable") != std::string_view::npos) {
     cure = "write a number of at most 1e100 in size";

@@ -45,6 +45,17 @@ std::string selection_text(const NodeSet& set) {
   return text + (set.group.empty() ? "" : fmt::format(", group \"{}\"", set.group));
 }
 
+bool check_box(const NodeSet& set, ErrorList& errors) {
+  const BoxSelection box = set.box.value_or(BoxSelection{});
+  const Vec3d size = box.high - box.low;
+  const bool good = size.x >= 0.0 && size.y >= 0.0 && size.z >= 0.0;
+  if (!good) {
+    errors.add(set.place, fmt::format("the box of node set \"{}\" has a low above its high", set.name),
+               "low <= high in x, y and z", "exchange these coordinates of the corners");
+  }
+  return good;
+}
+
 /// Appends the body's nodes that satisfy the selections.
 void append_selected(const NodeSet& set, const NodeGroup* group, const Model& model, const Body& body,
                      std::vector<Index>& nodes) {
@@ -110,6 +121,9 @@ std::vector<Index> BodyNames::find(std::span<const std::string> names, const Pla
 std::vector<Index> select_nodes(const NodeSet& set, std::span<const Mesh> meshes, const Model& model,
                                 const BodyNames& names, ErrorList& errors) {
   const std::size_t errors_before = errors.size();
+  if (!check_box(set, errors)) {
+    return {};
+  }
   std::vector<Index> bodies;
   if (set.bodies.empty()) {
     for (Index b = 0; b < model.body_count(); ++b) {

@@ -191,6 +191,13 @@ TEST(build_errors, an_empty_set_shows_its_selection_and_where_the_bodies_are) {
   expect_one(errors_of(d), {"\"edge\"", "[5, 5, 5] to [6, 6, 6]", "\"plate\" fills [0, 0, 0] to [2, 2, 0]"});
 }
 
+TEST(build_errors, a_box_whose_low_lies_above_its_high_is_told_as_such) {
+  Description d = good();
+  d.node_sets[0].place = line_7;
+  d.node_sets[0].box = BoxSelection{{0.0, 2.0, 0.0}, {0.0, 0.0, 0.0}};
+  expect_one(errors_of(d), {"the box of node set \"edge\" has a low above its high", "low <= high in x, y and z"});
+}
+
 TEST(build_errors, a_pressure_on_no_face_names_the_parts) {
   Description d = good();
   d.pressure = {{{"plate"}, "wing", 1.0, "", line_7}};

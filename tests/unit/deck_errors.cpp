@@ -137,6 +137,8 @@ const Wrong wrong_decks[] = {
      "11:12: error: this is no TOML: Error while parsing key-value pair: cannot redefine existing integer 'duration'; "
      "accepted: TOML 1.0 (toml.io)",
      "cure: give each key and each [table] once; things of which there can be several are [[tables]]"},
+    {"text_without_end", "name = \"steel\"", "name = \"steel", "23:14: error: this is no TOML: ",
+     "cure: end the text with a quote in the same line, and write \\\\ for a backslash in double quotes"},
     {"no_toml", "safety = 0.8", "safety: 0.8",
      "11:7: error: this is no TOML: Error while parsing key-value pair: expected '=', saw ':'; accepted: TOML 1.0 "
      "(toml.io)",

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <benchmark/benchmark.h>
+#include <malloc.h>
+#include <sys/resource.h>
+
+#include "cases.hpp"
+#include "cluster/simulation.hpp"
+#include "parallel/parallel.hpp"
+
+/// Memory of a model and its run, in bytes per element. The resident memory is the process's largest, so every case
+/// needs a process of its own, which run.py sees to.
+namespace {
+
+using fexp::Index;
+using fexp::bench::Scene;
+
+double bytes_in_use() {
+  const struct mallinfo2 now = mallinfo2();
+  return static_cast<double>(now.uordblks) + static_cast<double>(now.hblkhd);
+}
+
+double most_resident_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+void memory(benchmark::State& state, Scene scene) {
+  const double resident_before = most_resident_bytes();
+  for (auto iteration : state) {
+    fexp::parallel::with_threads(2, [&] {
+      const double at_start = bytes_in_use();
+      const fexp::model::Model model = fexp::bench::build(scene, static_cast<Index>(state.range(0)));
+      const double with_model = bytes_in_use();
+      double state_bytes = 0.0, workspace_bytes = 0.0;
+      {
+        const fexp::model::State initial = fexp::model::initial_state(model);
+        const double with_state = bytes_in_use();
+        state_bytes = with_state - with_model;
+        const fexp::solve::Workspace workspace(
+            model, fexp::solve::select_element_kernel(fexp::solve::KernelChoice::automatic));
+        workspace_bytes = bytes_in_use() - with_state;
+      }
+      fexp::cluster::Simulation simulation(model, fexp::solve::KernelChoice::automatic);
+      simulation.run_epoch(fexp::bench::four_steps(model));
+      const double elements = model.element_count();
+      state.counters["triangles"] = elements;
+      state.counters["model"] = (with_model - at_start) / elements;
+      state.counters["state"] = state_bytes / elements;
+      state.counters["workspace"] = workspace_bytes / elements;
+      state.counters["run"] = (bytes_in_use() - at_start) / elements;
+      state.counters["resident"] = (most_resident_bytes() - resident_before) / elements;
+    });
+  }
+}
+
+void sizes(benchmark::internal::Benchmark* b) {
+  b->ArgName("elements")->RangeMultiplier(10)->Range(10'000, 1'000'000)->Iterations(1);
+}
+
+}  // namespace
+
+BENCHMARK_CAPTURE(memory, plate, Scene::plate)->Apply(sizes);
+BENCHMARK_CAPTURE(memory, quiet_plate, Scene::quiet_plate)->Apply(sizes);
+BENCHMARK_CAPTURE(memory, separate_spheres, Scene::separate_spheres)->Apply(sizes);
+BENCHMARK_CAPTURE(memory, meeting_spheres, Scene::meeting_spheres)->Apply(sizes);
+BENCHMARK_MAIN();

@@ -11,7 +11,8 @@
 #include "model/build.hpp"
 #include "model/mesh_generators.hpp"
 
-/// Models of any size for the benchmarks, all of 10 mm steel shell, without conditions and loads.
+/// Models of any size for the benchmarks, of steel shells a fifth as thick as their elements are wide, without
+/// conditions and loads.
 namespace fexp::bench {
 
 enum class Scene {
@@ -23,9 +24,14 @@ enum class Scene {
 
 /// Largest speed in the plates [length/time]: nodes pass each other by a search's skin in about a hundred steps.
 inline constexpr double plate_speed = 10.0;
-inline constexpr double thickness = 0.01;
+/// Thickness over element width, whatever the size of the mesh: contact distance grows with it.
+inline constexpr double relative_thickness = 0.2;
 inline constexpr double sphere_radius = 0.5;
-inline constexpr Index sphere_elements = 192;
+inline constexpr int sphere_cells = 4;
+inline constexpr Index sphere_elements = 12 * sphere_cells * sphere_cells;
+
+/// Mean width of the cells of a sphere [length].
+inline double sphere_width(int cells) { return sphere_radius * std::sqrt(4.0 * 3.14 / 6.0) / cells; }
 
 inline model::BodyDescription body(const std::string& name, const model::MeshGenerator& mesh) {
   model::BodyDescription made;
@@ -45,15 +51,19 @@ inline model::Array grid(Index copies, const Vec3d& pitch) {
   return {{side, side, layers}, pitch};
 }
 
+inline int plate_cells(Index elements) {
+  return static_cast<int>(std::lround(std::sqrt(static_cast<double>(elements) / 2.0)));
+}
+
 inline model::BodyDescription plate(Index elements) {
-  const int cells = static_cast<int>(std::lround(std::sqrt(static_cast<double>(elements) / 2.0)));
+  const int cells = plate_cells(elements);
   model::BodyDescription made = body("plate", model::Plate{1.0, 1.0, cells, cells, "alternating"});
   made.angular_velocity = {2.0 * plate_speed, 0.0, 0.0};
   return made;
 }
 
 inline model::BodyDescription spheres(const std::string& name, Index copies, const Vec3d& pitch) {
-  model::BodyDescription made = body(name, model::CubedSphere{sphere_radius, 4});
+  model::BodyDescription made = body(name, model::CubedSphere{sphere_radius, sphere_cells});
   made.array = grid(copies, pitch);
   return made;
 }
@@ -61,12 +71,14 @@ inline model::BodyDescription spheres(const std::string& name, Index copies, con
 /// The scene with about so many elements. Throws when it cannot be built.
 inline model::Model build(Scene scene, Index elements) {
   constexpr double diameter = 2.0 * sphere_radius;
+  const bool is_plate = scene == Scene::plate || scene == Scene::quiet_plate;
+  const double thickness = relative_thickness * (is_plate ? 1.0 / plate_cells(elements) : sphere_width(sphere_cells));
   model::Description d;
   d.run.duration = 1.0;
   d.materials.push_back({"steel", physics::LinearElastic{7850.0, 2.1e11, 0.3}, {}});
   d.sections.push_back({"shell", "steel", thickness, {}});
   d.contact.enabled = scene != Scene::plate;
-  if (scene == Scene::plate || scene == Scene::quiet_plate) {
+  if (is_plate) {
     d.bodies.push_back(plate(elements));
   } else if (scene == Scene::separate_spheres) {
     const double pitch = 1.3 * diameter;

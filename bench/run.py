@@ -47,9 +47,11 @@ def make():
 def run(program, names, repetitions):
     """The reports of all repetitions of the benchmarks that match."""
     with tempfile.NamedTemporaryFile(suffix=".json") as out:
-        subprocess.run([program, f"--benchmark_filter={names}", f"--benchmark_repetitions={repetitions}",
-                        f"--benchmark_out={out.name}", "--benchmark_out_format=json"],
-                       check=True, stdout=subprocess.DEVNULL)
+        done = subprocess.run([program, f"--benchmark_filter={names}", f"--benchmark_repetitions={repetitions}",
+                               f"--benchmark_out={out.name}", "--benchmark_out_format=json"],
+                              check=False, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise SystemExit(f"{program} failed:\n{done.stderr}")
         text = Path(out.name).read_text()
     return [r for r in json.loads(text)["benchmarks"] if r["run_type"] == "iteration"] if text.strip() else []
 
@@ -65,15 +67,12 @@ def reports(name, names, repetitions):
 
 
 def case_of(run_name):
-    """Case and parameters from a name such as plate/elements:1000/threads:2/real_time."""
+    """Case and number of threads (None where it is no parameter) from names such as
+    plate/elements:1000/threads:2/iterations:30/real_time and memory/plate/elements:10000/iterations:1."""
     parts = run_name.split("/")
-    values = dict(p.split(":", 1) for p in parts if ":" in p)
-    words = [p for p in parts if ":" not in p and p not in ("real_time", name_of_group(parts))]
-    return "/".join(words) or parts[0], {k: v for k, v in values.items() if k in ("elements", "threads")}
-
-
-def name_of_group(parts):
-    return parts[0] if parts[0] in all_benchmarks else None
+    words = [p for p in parts if ":" not in p and p != "real_time" and p not in all_benchmarks]
+    threads = next((int(p.split(":")[1]) for p in parts if p.startswith("threads:")), None)
+    return "/".join(words), threads
 
 
 def rows_of(found):
@@ -83,18 +82,27 @@ def rows_of(found):
             raise SystemExit(f"{report['run_name']}: {report['error_message']}")
         runs.setdefault(report["run_name"], []).append(report)
     for run_name, repeated in runs.items():
-        case, parameters = case_of(run_name)
-        seconds = [r["real_time"] * {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}[r["time_unit"]] for r in repeated]
-        row = {"case": case, **parameters, "repetitions": len(repeated), "seconds": median(seconds),
-               "spread": (max(seconds) - min(seconds)) / median(seconds)}
-        for key in repeated[0]:
-            if key not in own_keys:
-                row[key] = median(r[key] for r in repeated)
-        yield {"case": case, "elements": int(row.pop("triangles")), **row,
-               **({"threads": int(parameters["threads"])} if "threads" in parameters else {})}
+        case, threads = case_of(run_name)
+        scale = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}[repeated[0]["time_unit"]]
+        seconds = [scale * r["real_time"] for r in repeated]
+        row = {"case": case, "elements": int(repeated[0]["triangles"])}
+        if threads is not None:
+            row["threads"] = threads
+        row |= {"repetitions": len(repeated), "seconds": median(seconds),
+                "spread": (max(seconds) - min(seconds)) / median(seconds)}
+        row |= {key: median(r[key] for r in repeated) for key in repeated[0] if key not in own_keys | {"triangles"}}
+        yield row
+
+
+def in_columns(rows):
+    """The rows with all columns of all cases; None where a case does not have one."""
+    columns = list(dict.fromkeys(column for row in rows for column in row))
+    return [{column: row.get(column) for column in columns} for row in rows]
 
 
 def text_of(value):
+    if value is None:
+        return ""
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
@@ -140,7 +148,7 @@ def main():
     folder = root / "bench" / "results" / options.machine
     load_before = os.getloadavg()[0]
     for name in options.benchmark or all_benchmarks:
-        rows = list(rows_of(reports(name, options.filter, options.repetitions)))
+        rows = in_columns(list(rows_of(reports(name, options.filter, options.repetitions))))
         if not rows:
             continue
         show(name, rows)

@@ -25,8 +25,8 @@ struct Sphere {
     model::Description d;
     d.run.duration = 1.0;
     d.materials.push_back({"steel", fexp::physics::LinearElastic{7850.0, 2.1e11, 0.3}, {}});
-    d.sections.push_back({"shell", "steel", 1.0e-3, {}});
     const int cells = static_cast<int>(std::lround(std::sqrt(static_cast<double>(elements) / 12.0)));
+    d.sections.push_back({"shell", "steel", fexp::bench::relative_thickness * fexp::bench::sphere_width(cells), {}});
     const model::CubedSphere mesh{fexp::bench::sphere_radius, cells};
     d.bodies.push_back(fexp::bench::body("sphere", mesh));
     fexp::ErrorList errors;

@@ -212,14 +212,15 @@ double NodeWatch::contact_distance(const Watched& w) const {
   for (std::size_t a = 0; a < 3; ++a) {
     distance += w.closest.weight[a] * model_.half_thickness[at(t[a])];
   }
-  const auto& X = model_.reference_position;
-  const Vec3d& p = X[at(node_)];
-  const Vec3d from = p - X[at(t[0])], side_2 = X[at(t[1])] - X[at(t[0])], side_3 = X[at(t[2])] - X[at(t[0])];
+  const std::vector<Vec3d>& reference = model_.reference_position;
+  const Vec3d& p = reference[at(node_)];
+  const Vec3d &a = reference[at(t[0])], &b = reference[at(t[1])], &c = reference[at(t[2])];
+  const Vec3d from = p - a, side_2 = b - a, side_3 = c - a;
   const double reach = distance + std::sqrt(std::max(dot(side_2, side_2), dot(side_3, side_3)));
   if (dot(from, from) > reach * reach) {
     return distance;
   }
-  const double reference2 = physics::closest_point(p, X[at(t[0])], X[at(t[1])], X[at(t[2])]).distance2;
+  const double reference2 = physics::closest_point(p, a, b, c).distance2;
   return reference2 < distance * distance ? std::sqrt(reference2) : distance;
 }
 

@@ -142,10 +142,15 @@ Deck parse_deck(std::string_view text, const std::string& file, ErrorList& error
       add_reference_errors(deck.description, fields, found);
     }
   }
+  const bool more = found.size() >= FieldReader::most_errors;
   std::vector<InputError> sorted = found.errors();
   std::stable_sort(sorted.begin(), sorted.end(), stands_before);
   for (InputError& error : sorted) {
     errors.add(std::move(error));
+  }
+  if (more) {
+    errors.add({file, 0, 0}, "there may be more errors", fmt::format("{} are shown", FieldReader::most_errors),
+               "correct these first");
   }
   return deck;
 }

@@ -19,7 +19,7 @@ constexpr std::string_view introduction = R"(# The deck
 A run is described by one TOML file ([toml.io](https://toml.io)), the deck. `fexp check DECK` says whether it makes sense, `fexp run DECK` runs it. This page is made from the program's own definitions by `fexp reference > docs/deck.md`.
 
 - The solver is free of units: use any consistent set. `[units]` only names them. The column *unit* below gives dimensions.
-- A number may be written whole (`2`) or real (`2.0`), but what counts (cells, copies) must be whole. Numbers are finite and at most 1e100 in size. A vector is a list of three numbers, `[x, y, z]`.
+- A number may be written whole (`2`) or real (`2.0`), but what counts (cells, copies) must be whole. Numbers are 0 or from 1e-100 to 1e100 in size. A vector is a list of three numbers, `[x, y, z]`.
 - Tables of which there can be several have double brackets, `[[body]]`. A table inside another one can be written in braces, `mesh = { kind = "plate", length_x = 1, length_y = 1 }`, or below it under a header of its own, `[body.mesh]`.
 - Sections, materials, curves, node sets and bodies are referred to by name. The order of the tables does not matter, except that rotations are applied as listed.
 - Unknown keys, wrong types, values out of range and names that are not there are errors with line and column; all of them are shown at once, and nothing is run.

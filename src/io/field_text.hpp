@@ -37,7 +37,8 @@ struct Limits {
   Choices choices{};
 };
 
-/// Numbers in a deck are no larger than this, which leaves room for squares and products.
+/// Numbers in a deck are zero or between these in size, which leaves room for squares and products.
+inline constexpr double smallest_number = 1.0e-100;
 inline constexpr double largest_number = 1.0e100;
 
 [[nodiscard]] inline std::string in_words(const Range& range) {

@@ -80,7 +80,7 @@ void FieldReader::check_keys(const TomlTable& table, const std::string& path, st
       add(entry.line, entry.column,
           path.empty() ? fmt::format("unknown section or key \"{}\"", shown(entry.key))
                        : fmt::format("unknown key \"{}\" in {}", shown(entry.key), path),
-          fmt::format("{}", fmt::join(known, ", ")), did_you_mean(entry.key, known, "remove it"));
+          fmt::format("{}", fmt::join(known, ", ")), did_you_mean(entry.key, known, "use one of these, or remove it"));
     }
   }
 }
@@ -143,9 +143,10 @@ void FieldReader::read(const TomlValue& value, const std::string& path, const Li
     add(value.line, value.column, fmt::format("{} is {}", path, number),
         std::isfinite(number) ? type_text(out, limits) : "a finite number" + in_words(limits.range),
         "correct the number");
-  } else if (std::abs(number) > largest_number) {
+  } else if (number != 0.0 && (std::abs(number) > largest_number || std::abs(number) < smallest_number)) {
     add(value.line, value.column, fmt::format("{} is {}", path, number),
-        fmt::format("a number of at most {} in size", largest_number), "correct the number, or choose other units");
+        fmt::format("0, or a number from {} to {} in size", smallest_number, largest_number),
+        "correct the number, or choose other units");
   } else {
     out = number;
   }

@@ -21,6 +21,9 @@ namespace fexp::io {
 /// table.
 class FieldReader {
  public:
+  /// Errors beyond these are not taken: one mistake can repeat itself a million times in a list.
+  static constexpr std::size_t most_errors = 100;
+
   FieldReader(std::string file, ErrorList& errors) : file_(std::move(file)), errors_(errors) {}
 
   /// Reads all fields from a table. Keys that are neither fields nor `others` are errors.
@@ -148,8 +151,6 @@ class FieldReader {
   [[nodiscard]] bool is_full() const noexcept { return errors_.size() >= most_errors; }
 
  private:
-  static constexpr std::size_t most_errors = 100;
-
   void wrong_type(const TomlValue& value, const std::string& path, const std::string& accepted);
   void missing_key(const TomlValue& table, const std::string& path, std::string_view key, const std::string& accepted,
                    std::string_view meaning);

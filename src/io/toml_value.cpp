@@ -75,7 +75,7 @@ void add_syntax_error(const toml::parse_error& error, const std::string& file, E
     cure = "end the text with a quote in the same line, and write \\\\ for a backslash in double quotes";
   } else if (description.find("could not be interpreted") != std::string_view::npos ||
              description.find("not representable") != std::string_view::npos) {
-    cure = "write a number of at most 1e100 in size";
+    cure = "write a number that is 0 or from 1e-100 to 1e100 in size";
   }
   std::string message;
   for (const char c : description) {  // toml++ quotes what it met, which may be any character

@@ -194,6 +194,30 @@ void reserve(std::size_t nodes, std::size_t elements, Model& model) {
   model.element_block.reserve(elements);
 }
 
+/// Far from the origin, coordinates lack the digits that tell a triangle's corners apart.
+void check_reach(const BodyDescription& body, const Mesh& mesh, const PlacedMesh& placed, ErrorList& errors) {
+  constexpr double most_edges = 1.0e9;  // Leaves positions within an edge some six digits.
+  const Array array = body.array.value_or(Array{});
+  const Vec3d last{(array.count[0] - 1) * array.pitch.x, (array.count[1] - 1) * array.pitch.y,
+                   (array.count[2] - 1) * array.pitch.z};
+  double reach = 0.0, edge = HUGE_VAL;
+  for (const Vec3d& p : placed.position) {
+    reach = std::max({reach, norm(p), norm(p + last)});
+  }
+  for (const Triangle& t : mesh.triangle) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      edge = std::min(edge, body.scale * norm(mesh.position[at(t[(a + 1) % 3])] - mesh.position[at(t[a])]));
+    }
+  }
+  if (!(reach <= most_edges * edge)) {
+    errors.add(
+        body.place,
+        fmt::format("body \"{}\" reaches {:g} from the origin, its shortest edge is {:g}", body.name, reach, edge),
+        fmt::format("at most {:g} edges from the origin", most_edges),
+        "correct its translation, scale or pitch, or move the whole model to the origin");
+  }
+}
+
 }  // namespace
 
 void build_bodies(const Description& description, std::span<const Mesh> meshes, Model& model, ErrorList& errors) {
@@ -227,6 +251,7 @@ void build_bodies(const Description& description, std::span<const Mesh> meshes, 
       continue;
     }
     const PlacedMesh placed = place_mesh(body, mesh, sections);
+    check_reach(body, mesh, placed, errors);
     const Array array = body.array.value_or(Array{});
     for (int k = 0; k < array.count[2]; ++k) {
       for (int j = 0; j < array.count[1]; ++j) {

@@ -105,6 +105,20 @@ class ReferenceChecks {
   ErrorList& errors_;
 };
 
+void check_body_sections(const BodyDescription& body, const std::vector<std::string>& sections, ErrorList& errors) {
+  if (!body.section.empty()) {
+    check_section_name(sections, body.section, body.name, body.place, errors);
+  }
+  std::set<std::string> parts;
+  for (const PartSection& part : body.parts) {
+    if (!parts.insert(part.part).second) {
+      errors.add(part.place, fmt::format("body \"{}\" gives part \"{}\" a section twice", body.name, part.part),
+                 "one section for each part", "remove one of them");
+    }
+    check_section_name(sections, part.section, body.name, part.place, errors);
+  }
+}
+
 void check_placement(const BodyDescription& body, ErrorList& errors) {
   for (const Rotation& rotation : body.rotate) {
     if (!has_direction(rotation.axis)) {
@@ -206,15 +220,15 @@ void check_description(const Description& description, ErrorList& errors) {
     }
   }
   for (const BodyDescription& body : description.bodies) {
-    if (!body.section.empty()) {
-      check_section_name(sections, body.section, body.name, body.place, errors);
-    }
-    for (const PartSection& part : body.parts) {
-      check_section_name(sections, part.section, body.name, part.place, errors);
-    }
+    check_body_sections(body, sections, errors);
     check_placement(body, errors);
   }
   for (const Fixed& fixed : description.fixed) {
+    if (fixed.dofs.empty()) {
+      errors.add(fixed.place, fmt::format("nothing is fixed on set \"{}\"", fixed.set),
+                 name_list(std::vector<std::string>(dof_names.begin(), dof_names.end())),
+                 "name degrees of freedom in dofs, or leave it out to hold them all");
+    }
     for (const std::string& dof : fixed.dofs) {
       check_dof(dof, fixed.place, errors);
     }

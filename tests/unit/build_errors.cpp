@@ -107,6 +107,27 @@ TEST(build_errors, names_given_twice_or_not_at_all_are_refused) {
   expect_one(errors_of(d), {"curve has no name"});
 }
 
+TEST(build_errors, a_part_with_two_sections_and_nothing_fixed_are_refused) {
+  Description d = good();
+  d.bodies[0].parts = {{"shell", "s", {}}, {"shell", "s", line_7}};
+  expect_one(errors_of(d), {"part \"shell\"", "twice"});
+  d = good();
+  d.fixed.push_back({"edge", {}, line_7});
+  expect_one(errors_of(d), {"nothing is fixed on set \"edge\"", "accepted: x, y, z, rx, ry, rz"});
+}
+
+TEST(build_errors, bodies_so_far_away_that_their_shape_is_lost_are_refused) {
+  Description d = good();
+  d.bodies[1].place = line_7;
+  d.bodies[1].translate = {0.0, 0.0, 1.0e6};
+  EXPECT_TRUE(errors_of(d).empty());
+  d.bodies[1].translate = {0.0, 0.0, 1.0e10};
+  expect_one(errors_of(d), {"body \"ball\" reaches 1e+10", "translation"});
+  d.bodies[1].translate = {};
+  d.bodies[1].array = Array{{1, 1, 2}, {0.0, 0.0, 1.0e100}};
+  expect_one(errors_of(d), {"body \"ball\" reaches 1e+100", "pitch"});
+}
+
 TEST(build_errors, copies_on_top_of_each_other_and_bad_counts_are_refused) {
   Description d = good();
   d.bodies[0].place = line_7;
@@ -240,7 +261,7 @@ TEST(build_errors, masses_that_are_no_positive_numbers_name_a_node_of_each_body)
   Description d = good();
   d.bodies[0].scale = 1e-170;
   d.bodies[0].place = line_7;
-  d.bodies[0].array = Array{{3, 1, 1}, {1.0, 1.0, 1.0}};
+  d.bodies[0].array = Array{{3, 1, 1}, {5e-170, 0.0, 0.0}};
   d.node_sets.clear();
   expect_one(errors_of(d), {"node 0 of body \"plate[0,0,0]\"", "units"});
 }

@@ -60,7 +60,7 @@ const Wrong wrong_decks[] = {
     {"unknown_key", "safety =", "sfaety =", "11:1: error: unknown key \"sfaety\" in run",
      "cure: did you mean \"safety\"?"},
     {"unknown_key_without_likeness", "safety =", "zzzzzz =", "11:1: error: unknown key \"zzzzzz\" in run",
-     "cure: remove it"},
+     "cure: use one of these, or remove it"},
     {"unknown_key_of_a_mesh", "cells = 3", "cell = 3",
      "36:47: error: unknown key \"cell\" in body.mesh; accepted: radius, cells, kind", "cure: did you mean \"cells\"?"},
     {"text_for_number", "safety = 0.8", "safety = \"0.8\"",
@@ -86,7 +86,10 @@ const Wrong wrong_decks[] = {
     {"infinity", "velocity = 3", "velocity = inf",
      "79:12: error: prescribed.velocity is inf; accepted: a finite number", "cure: correct the number"},
     {"beyond_all_bounds", "velocity = 3", "velocity = 1e200",
-     "79:12: error: prescribed.velocity is 1e+200; accepted: a number of at most 1e+100 in size",
+     "79:12: error: prescribed.velocity is 1e+200; accepted: 0, or a number from 1e-100 to 1e+100 in size",
+     "cure: correct the number, or choose other units"},
+    {"too_small_to_be_squared", "thickness = 0.5", "thickness = 1e-200",
+     "32:13: error: section.thickness is 1e-200; accepted: 0, or a number from 1e-100 to 1e+100 in size",
      "cure: correct the number, or choose other units"},
     {"count_beyond_range", "count = [2, 1, 3]", "count = [2, 100000000, 3]",
      "56:13: error: body.array.count[2] is 100000000", "cure: correct the number"},
@@ -146,7 +149,7 @@ const Wrong wrong_decks[] = {
     {"number_that_overflows", "safety = 0.8", "safety = 1e400",
      "11:15: error: this is no TOML: Error while parsing floating-point: '1e400' could not be interpreted as a value; "
      "accepted: TOML 1.0 (toml.io)",
-     "cure: write a number of at most 1e100 in size"},
+     "cure: write a number that is 0 or from 1e-100 to 1e100 in size"},
     {"line_break_in_a_name", "name = \"floor\"", "name = \"fl\\noor\"",
      "104:8: error: plane.name holds a line break or a control character; accepted: printable text in one line",
      "cure: remove the character"},
@@ -224,7 +227,11 @@ TEST(deck_errors, no_more_than_a_hundred_errors_are_shown) {
   for (int i = 0; i < 3000; ++i) {
     text += "key_" + std::to_string(i) + " = 1\n";
   }
-  EXPECT_EQ(errors_of(text).size(), 100U);
+  ErrorList errors;
+  static_cast<void>(parse_deck(text, "d", errors));
+  ASSERT_EQ(errors.size(), 101U);
+  EXPECT_EQ(errors.errors().back().text(),
+            "d: error: there may be more errors; accepted: 100 are shown; cure: correct these first");
 }
 
 TEST(deck_errors, keys_of_a_million_parts_are_refused_and_not_followed) {

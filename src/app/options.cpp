@@ -11,7 +11,8 @@ void add_deck_option(CLI::App& options, std::string& deck) {
 void add_threads_option(CLI::App& options, int& threads) {
   constexpr int most = 4096;
   options.add_option("--threads", threads, "Threads to compute with; as many as the machine has when left out")
-      ->check(CLI::Range(1, most));
+      ->check(CLI::Range(1, most))
+      ->option_text("N");
 }
 
 void add_json_option(CLI::App& options, bool& json, const char* meaning) { options.add_flag("--json", json, meaning); }

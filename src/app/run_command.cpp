@@ -147,7 +147,8 @@ std::function<ExitCode()> declare(CLI::App& app) {
   using solve::KernelChoice;
   auto options = std::make_shared<RunOptions>();
   add_deck_option(app, options->deck);
-  app.add_option("--out", options->out, "Directory for the results; DECK.run, DECK-2.run ... when left out");
+  app.add_option("--out", options->out, "Directory for the results; DECK.run, DECK-2.run ... when left out")
+      ->option_text("DIR");
   app.add_flag("--force", options->force, "Replace the results in the directory");
   add_threads_option(app, options->threads);
   app.add_flag("--quiet", options->quiet, "Print errors only");
@@ -155,7 +156,7 @@ std::function<ExitCode()> declare(CLI::App& app) {
   app.add_option("--hash-every", options->hash_every,
                  "Write a hash of every body after every N steps, for \"fexp compare\"")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62))
-      ->type_name("N");
+      ->option_text("N");
   const std::map<std::string, KernelChoice> kernels{{"auto", KernelChoice::automatic},
                                                     {"scalar", KernelChoice::scalar},
                                                     {"baseline", KernelChoice::baseline},
@@ -163,7 +164,8 @@ std::function<ExitCode()> declare(CLI::App& app) {
                                                     {"avx512", KernelChoice::avx512}};
   app.add_option("--kernel", options->kernel,
                  "Element kernel: auto, scalar, baseline, avx2 or avx512; all give the same bits (for tests)")
-      ->transform(CLI::CheckedTransformer(kernels));
+      ->transform(CLI::CheckedTransformer(kernels))
+      ->option_text("NAME");
   return [options] { return run(*options); };
 }
 

@@ -44,12 +44,7 @@ SignalWatch::SignalWatch() {
   }
 }
 
-SignalWatch::~SignalWatch() {
-  back_to_default();
-  for (const int signal : writing) {
-    static_cast<void>(std::signal(signal, SIG_DFL));
-  }
-}
+SignalWatch::~SignalWatch() { back_to_default(); }
 
 int SignalWatch::received() noexcept { return received_signal; }
 

@@ -28,8 +28,8 @@ void run_time_loop(const Case& loaded, std::int64_t hash_every, cluster::Simulat
   const double duration = loaded.model.run.duration;
   Schedule schedule(duration, intervals.results_interval, intervals.history_interval);
   end.last = simulation.present();
-  output.frame(simulation, end.last);
   output.row(simulation, end.last);
+  output.frame(simulation, end.last);
   while (!schedule.over()) {
     end.last = timed_epoch(simulation, schedule.next(), hash_every, end.stepping_seconds);
     output.epoch(end.last);
@@ -40,11 +40,12 @@ void run_time_loop(const Case& loaded, std::int64_t hash_every, cluster::Simulat
       break;
     }
     if (simulation.state().time == schedule.next()) {
-      if (schedule.frame_due()) {
-        output.frame(simulation, end.last);
-      }
+      // Rows first: they reach the disk with the frame.
       if (schedule.row_due()) {
         output.row(simulation, end.last);
+      }
+      if (schedule.frame_due()) {
+        output.frame(simulation, end.last);
       }
       schedule.advance();
     }
@@ -57,8 +58,8 @@ void run_time_loop(const Case& loaded, std::int64_t hash_every, cluster::Simulat
       break;
     }
   }
-  output.frame(simulation, end.last);
   output.row(simulation, end.last);
+  output.frame(simulation, end.last);
 }
 
 }  // namespace fexp::app

@@ -2,7 +2,6 @@
 #include "io/run_directory.hpp"
 
 #include <fmt/format.h>
-#include <hdf5.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -12,6 +11,7 @@
 
 #include "io/atomic_file.hpp"
 #include "io/output_error.hpp"
+#include "io/vtkhdf_hdf5.hpp"
 #include "parallel/library_version.hpp"
 
 namespace fexp::io {
@@ -105,17 +105,13 @@ std::string compiler_name() {
 }  // namespace
 
 Versions present_versions(std::string_view kernel) {
-  unsigned major = 0;
-  unsigned minor = 0;
-  unsigned release = 0;
-  H5get_libversion(&major, &minor, &release);
   char host[256] = "unknown";
   gethostname(host, sizeof(host) - 1);
   Versions versions;
   versions.lines = {{"fexp", FEXP_VERSION},
                     {"compiler", compiler_name()},
                     {"kernel", std::string(kernel)},
-                    {"HDF5", fmt::format("{}.{}.{}", major, minor, release)},
+                    {"HDF5", hdf5::library_version()},
                     {"oneTBB", parallel::library_version()},
                     {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
                     {"nlohmann-json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,

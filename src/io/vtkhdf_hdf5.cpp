@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/vtkhdf_hdf5.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -11,7 +13,13 @@ namespace fexp::io::hdf5 {
 
 namespace {
 
-void keep_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+/// Before any other call. A file that could not be closed (a full disk) stays on HDF5's list after its memory is freed,
+/// and the clean-up at the program's end would follow it. That clean-up has nothing to do here: handles close
+/// themselves.
+void set_up() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 /// HDF5 lists a failure from the outermost call inwards; the innermost knows the operating system's words.
 std::string innermost_reason() {
@@ -70,6 +78,13 @@ Handle simple_space(Shape shape) {
 
 }  // namespace
 
+std::string library_version() {
+  set_up();
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return fmt::format("{}.{}.{}", major, minor, release);
+}
+
 hid_t type_of(FieldType type) {
   switch (type) {
     case FieldType::double_precision:
@@ -83,7 +98,7 @@ hid_t type_of(FieldType type) {
 }
 
 File File::create(const std::filesystem::path& path, std::size_t chunk_capacity) {
-  keep_quiet();
+  set_up();
   File file(path, {});
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   const std::size_t half = std::clamp<std::size_t>((chunk_capacity + 1) / 2, 32, 32767);
@@ -95,7 +110,7 @@ File File::create(const std::filesystem::path& path, std::size_t chunk_capacity)
 }
 
 File File::open_to_append(const std::filesystem::path& path) {
-  keep_quiet();
+  set_up();
   File file(path, {});
   const Handle access = access_list(&file);
   file.file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, access.id()), H5Fclose);
@@ -106,7 +121,7 @@ File File::open_to_append(const std::filesystem::path& path) {
 }
 
 File File::open_to_read(const std::filesystem::path& path) {
-  keep_quiet();
+  set_up();
   File file(path, {});
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   file.check(H5Pset_file_locking(access.id(), false, true), "set up HDF5");

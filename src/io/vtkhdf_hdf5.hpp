@@ -44,6 +44,9 @@ class Handle {
   Close close_{};
 };
 
+/// Version of the HDF5 that is loaded.
+[[nodiscard]] std::string library_version();
+
 /// HDF5's name of a field's numbers, in memory and in the file.
 [[nodiscard]] hid_t type_of(FieldType type);
 

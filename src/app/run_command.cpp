@@ -78,7 +78,7 @@ std::int64_t run_with_output(const RunOptions& options, const Case& loaded, cons
 }
 
 /// Says on stderr why a run was not completed, and what to do.
-ExitCode report_end(const RunEnd& end, const io::RunDirectory& directory) {
+ExitCode report_end(const RunEnd& end, std::int64_t frames, const io::RunDirectory& directory) {
   const std::string results = directory.results().string();
   switch (end.reason) {
     case EndReason::completed:
@@ -95,7 +95,7 @@ ExitCode report_end(const RunEnd& end, const io::RunDirectory& directory) {
       return static_cast<ExitCode>(128 + end.signal);
     case EndReason::output_error:
       print_error(
-          fmt::format("fexp: {}\nThe run stopped; frames written before can be read from {}.\n", end.message, results));
+          fmt::format("fexp: {}\nThe run stopped; {} frames can be read from {}.\n", end.message, frames, results));
       return ExitCode::output;
   }
   return ExitCode::internal;
@@ -130,7 +130,7 @@ ExitCode run_here(const RunOptions& options) {
   } else if (!options.quiet) {
     print_out(summary_text(summary, loaded.deck.units, simulation.start(), end.last.diagnostics));
   }
-  return report_end(end, directory);
+  return report_end(end, frames, directory);
 }
 
 ExitCode run(const RunOptions& options) {

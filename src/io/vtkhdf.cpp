@@ -34,6 +34,7 @@ struct ResultsWriter::Parts {
   Index elements{};
   int deflate{};
   bool usable{true};
+  bool abandoned{};
 
   struct Growing {
     Handle dataset;
@@ -278,10 +279,18 @@ void ResultsWriter::append(const model::Frame& frame) {
                       "capture it from that model");
   }
   parts_->usable = false;
-  parts_->write_frame(frame);
-  parts_->file.flush();
-  parts_->file.set_attribute("/VTKHDF/Steps", "NSteps", std::vector<std::int64_t>{parts_->frames + 1});
-  parts_->file.flush();
+  try {
+    parts_->write_frame(frame);
+    parts_->file.reserve();
+    parts_->file.flush();
+    parts_->file.set_attribute("/VTKHDF/Steps", "NSteps", std::vector<std::int64_t>{parts_->frames + 1});
+    parts_->file.flush();
+  } catch (const OutputError&) {
+    // What remains in memory speaks of data that are not in the file.
+    parts_->file.abandon();
+    parts_->abandoned = true;
+    throw;
+  }
   ++parts_->frames;
   parts_->usable = true;
 }
@@ -291,7 +300,9 @@ std::int64_t ResultsWriter::frames() const noexcept { return parts_->frames; }
 void ResultsWriter::close() {
   parts_->usable = false;
   parts_->release_datasets();
-  parts_->file.close();
+  if (!parts_->abandoned) {
+    parts_->file.close();
+  }
 }
 
 }  // namespace fexp::io

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/vtkhdf_hdf5.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
+#include <system_error>
 
 #include "io/output_error.hpp"
 
@@ -129,6 +134,36 @@ File File::open_to_read(const std::filesystem::path& path) {
   file.file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   file.check(file.id(), "open the results file");
   return file;
+}
+
+int File::descriptor() const noexcept {
+  void* descriptor = nullptr;
+  return H5Fget_vfd_handle(id(), H5P_DEFAULT, &descriptor) < 0 ? -1 : *static_cast<int*>(descriptor);
+}
+
+void File::reserve() {
+  haddr_t end = 0;
+  check(H5Fget_eoa(id(), &end), "find the end of the results file");
+  if (end <= reserved_) {
+    return;
+  }
+  const int error = posix_fallocate(descriptor(), static_cast<off_t>(reserved_), static_cast<off_t>(end - reserved_));
+  // Where a file system cannot reserve, the write will tell.
+  if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
+    const std::string reason = std::generic_category().message(error);
+    throw OutputError(path_, "cannot write results: " + reason, cure_for(reason));
+  }
+  reserved_ = end;
+}
+
+void File::abandon() noexcept {
+  // HDF5 has no way to close a file without writing what it holds; what it writes now goes nowhere.
+  int nowhere = memfd_create("abandoned", MFD_CLOEXEC);
+  nowhere = nowhere < 0 ? ::open("/dev/null", O_RDWR | O_CLOEXEC) : nowhere;
+  if (nowhere >= 0) {
+    static_cast<void>(dup3(nowhere, descriptor(), O_CLOEXEC));
+    static_cast<void>(::close(nowhere));
+  }
 }
 
 void File::flush() { check(H5Fflush(id(), H5F_SCOPE_LOCAL), "write results"); }

@@ -68,8 +68,13 @@ class File {
   void renamed_to(std::filesystem::path path) { path_ = std::move(path); }
   [[nodiscard]] hid_t id() const noexcept { return file_.id(); }
 
+  /// Takes the disk space of all that is in memory, so that a full disk is met before metadata points to what is not
+  /// there.
+  void reserve();
   /// Hands everything in memory to the operating system.
   void flush();
+  /// Leaves the file as it stands now: closing it writes no more to it.
+  void abandon() noexcept;
   /// Closes the file; throws when what was in memory could not be written.
   void close();
 
@@ -117,8 +122,11 @@ class File {
  private:
   File(std::filesystem::path path, Handle file) : path_(std::move(path)), file_(std::move(file)) {}
 
+  [[nodiscard]] int descriptor() const noexcept;
+
   std::filesystem::path path_;
   Handle file_;
+  haddr_t reserved_{};  // bytes from the file's beginning
 };
 
 }  // namespace fexp::io::hdf5

@@ -95,18 +95,22 @@ class Output(program.Case):
 
     def test_a_file_that_cannot_grow_leaves_the_frames_before(self):
         self.run_deck("--out", "whole")
-        # The last of five frames does not fit.
-        limit = (self.folder / "whole/results.vtkhdf").stat().st_size - 1000
-        result = self.fexp("run", "deck.toml", "--out", "cut", "--json",
-                           preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
-        self.assertEqual(result.returncode, 4, result.stderr)
-        self.assertIn("cut/results.vtkhdf", result.stderr)
-        summary = json.loads(result.stdout)
-        self.assertEqual(summary["exit_reason"], "output error")
-        self.assertFalse(summary["completed"])
-        info = json.loads(self.fexp("info", "cut", "--json").stdout)
-        self.assertEqual(info["frames"], summary["frames"])
-        self.assertEqual(info["frames"], 4)
+        size = (self.folder / "whole/results.vtkhdf").stat().st_size
+        counts = []
+        for missing in range(1, 60000, 2500):
+            limit = size - missing
+            result = self.fexp("run", "deck.toml", "--out", "cut", "--force", "--json",
+                               preexec_fn=lambda most=limit: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+            self.assertEqual(result.returncode, 4, result.stderr)
+            self.assertIn("cut/results.vtkhdf: error: cannot write results: File too large", result.stderr)
+            summary = json.loads(result.stdout)
+            self.assertEqual((summary["completed"], summary["exit_reason"]), (False, "output error"))
+            read = self.fexp("info", "cut", "--json")
+            self.assertEqual(read.returncode, 0, f"{missing} bytes are missing: {read.stderr}")
+            self.assertEqual(json.loads(read.stdout)["frames"], summary["frames"])
+            counts.append(summary["frames"])
+        self.assertEqual(counts, sorted(counts, reverse=True))
+        self.assertEqual((counts[0], counts[-1]), (4, 2))
 
     def test_standard_output_that_takes_nothing(self):
         name = self.write_deck()

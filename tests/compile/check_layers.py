@@ -31,7 +31,6 @@ PRIVATE_LIBRARIES = {
     "H5": {"io"},
     "nlohmann/": {"io", "app"},
     "CLI/": {"app"},
-    "spdlog/": {"app"},
     "xxhash": {"base"},
     "iostream": {"io", "app"},
     "print": {"io", "app"},

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <type_traits>
 
 #if defined(__AVX512F__) || defined(__AVX2__)
@@ -60,16 +62,10 @@ struct BasicPack {
 
   [[nodiscard]] static BasicPack load(const double* p) noexcept {
     BasicPack r;
-    for (int i = 0; i < W; ++i) {
-      r.v[i] = p[i];
-    }
+    std::memcpy(&r.v, p, sizeof(r.v));
     return r;
   }
-  void store(double* p) const noexcept {
-    for (int i = 0; i < W; ++i) {
-      p[i] = v[i];
-    }
-  }
+  void store(double* p) const noexcept { std::memcpy(p, &v, sizeof(v)); }
   [[nodiscard]] double lane(int i) const noexcept { return v[i]; }
   void set_lane(int i, double value) noexcept { v[i] = value; }
 
@@ -105,6 +101,102 @@ struct BasicPack {
   /// Lane-wise larger value; both operands must be free of NaN.
   friend BasicPack maximum(BasicPack a, BasicPack b) noexcept { return BasicPack(a.v > b.v ? a.v : b.v); }
 };
+
+namespace detail {
+/// Exchanges rows and columns of W vectors of W doubles, stage by stage. Templates over the
+/// instruction set for the same reason as the packs.
+template <InstructionSet>
+inline void transpose(std::array<Double2, 2>& r) noexcept {
+  const Double2 a = r[0], b = r[1];
+  r[0] = __builtin_shufflevector(a, b, 0, 2);
+  r[1] = __builtin_shufflevector(a, b, 1, 3);
+}
+template <InstructionSet>
+inline void transpose(std::array<Double4, 4>& r) noexcept {
+  const Double4 a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6),
+                b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+  const Double4 c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6),
+                d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+  r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  r[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  r[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+template <InstructionSet>
+inline void transpose(std::array<Double8, 8>& r) noexcept {
+  std::array<Double8, 8> a, b;
+  for (std::size_t i = 0; i < 8; i += 2) {
+    a[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    a[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (std::size_t i = 0; i < 8; i += 4) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      b[i + k] = __builtin_shufflevector(a[i + k], a[i + k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      b[i + k + 2] = __builtin_shufflevector(a[i + k], a[i + k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  }
+  for (std::size_t k = 0; k < 4; ++k) {
+    r[k] = __builtin_shufflevector(b[k], b[k + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    r[k + 4] = __builtin_shufflevector(b[k], b[k + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+}  // namespace detail
+
+/// Reads `Count` consecutive doubles from each of W rows into `Count` packs, one lane per row.
+template <std::size_t Count, int W, InstructionSet Set>
+inline void load_rows(const std::array<const double*, std::size_t(W)>& rows,
+                      std::array<BasicPack<W, Set>, Count>& packs) noexcept {
+  constexpr auto width = static_cast<std::size_t>(W);
+  constexpr std::size_t whole = Count / width * width;
+  for (std::size_t first = 0; first < whole; first += width) {
+    std::array<typename BasicPack<W, Set>::Native, width> square;
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      std::memcpy(&square[lane], rows[lane] + first, sizeof(square[lane]));
+    }
+    detail::transpose<Set>(square);
+    for (std::size_t i = 0; i < width; ++i) {
+      packs[first + i].v = square[i];
+    }
+  }
+  for (std::size_t i = whole; i < Count; ++i) {
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      packs[i].v[lane] = rows[lane][i];
+    }
+  }
+}
+template <std::size_t Count>
+inline void load_rows(const std::array<const double*, 1>& rows, std::array<double, Count>& values) noexcept {
+  std::memcpy(values.data(), rows[0], sizeof(values));
+}
+
+/// Writes lane k of `Count` packs as `Count` consecutive doubles to rows + k x stride, for the first `used` lanes.
+template <std::size_t Count, int W, InstructionSet Set>
+inline void store_rows(const std::array<BasicPack<W, Set>, Count>& packs, double* rows, std::size_t stride,
+                       std::size_t used) noexcept {
+  constexpr auto width = static_cast<std::size_t>(W);
+  constexpr std::size_t whole = Count / width * width;
+  for (std::size_t first = 0; first < whole; first += width) {
+    std::array<typename BasicPack<W, Set>::Native, width> square;
+    for (std::size_t i = 0; i < width; ++i) {
+      square[i] = packs[first + i].v;
+    }
+    detail::transpose<Set>(square);
+    for (std::size_t lane = 0; lane < used; ++lane) {
+      std::memcpy(rows + lane * stride + first, &square[lane], sizeof(square[lane]));
+    }
+  }
+  for (std::size_t i = whole; i < Count; ++i) {
+    for (std::size_t lane = 0; lane < used; ++lane) {
+      rows[lane * stride + i] = packs[i].v[lane];
+    }
+  }
+}
+template <std::size_t Count>
+inline void store_rows(const std::array<double, Count>& values, double* rows, std::size_t, std::size_t used) noexcept {
+  if (used > 0) {
+    std::memcpy(rows, values.data(), sizeof(values));
+  }
+}
 
 /// The pack of W doubles of this translation unit's instruction set.
 template <int W>

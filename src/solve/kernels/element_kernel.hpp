@@ -28,23 +28,18 @@ inline void update_lanes(const ElementKernelArguments& k, Index block_index, Ind
   const model::ElementBlock& block = k.blocks[block_index];
   const physics::ShellSection& section = k.sections[block.section];
 
-  // [corner][position 0-2, velocity 3-5, rotation rate 6-8][lane]
-  alignas(64) double gathered[3][9][static_cast<std::size_t>(width)];
-  for (Index lane = 0; lane < width; ++lane) {
-    const Index used = first + lane < block.count ? first + lane : block.count - 1;
-    const std::array<Index, 3>& nodes = k.triangle[block.first + used];
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const double* motion = &k.motion[nodes[corner]].position.x;
-      for (std::size_t component = 0; component < 9; ++component) {
-        gathered[corner][component][lane] = motion[component];
-      }
-    }
-  }
   std::array<Vec3<T>, 3> x, v, w;
-  for (std::size_t c = 0; c < 3; ++c) {
-    x[c] = {Access::load(gathered[c][0]), Access::load(gathered[c][1]), Access::load(gathered[c][2])};
-    v[c] = {Access::load(gathered[c][3]), Access::load(gathered[c][4]), Access::load(gathered[c][5])};
-    w[c] = {Access::load(gathered[c][6]), Access::load(gathered[c][7]), Access::load(gathered[c][8])};
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    std::array<const double*, at(width)> rows;
+    for (Index lane = 0; lane < width; ++lane) {
+      const Index used = first + lane < block.count ? first + lane : block.count - 1;
+      rows[at(lane)] = &k.motion[k.triangle[block.first + used][corner]].position.x;
+    }
+    std::array<T, 9> motion;
+    load_rows(rows, motion);
+    x[corner] = {motion[0], motion[1], motion[2]};
+    v[corner] = {motion[3], motion[4], motion[5]};
+    w[corner] = {motion[6], motion[7], motion[8]};
   }
 
   double* row = k.history + (at(block_index) * model::element_rows * block_lanes + at(first));
@@ -84,25 +79,17 @@ inline void update_lanes(const ElementKernelArguments& k, Index block_index, Ind
 
   std::array<Vec3<T>, 3> force, moment;
   physics::corner_forces(section, physics::triangle_frame(a, b), s, force, moment);
-  // [corner][force 0-2, moment 3-5][lane]
-  alignas(64) double out[3][6][static_cast<std::size_t>(width)];
+  std::array<T, 18> corners;
   for (std::size_t c = 0; c < 3; ++c) {
-    Access::store(force[c].x, out[c][0]);
-    Access::store(force[c].y, out[c][1]);
-    Access::store(force[c].z, out[c][2]);
-    Access::store(moment[c].x, out[c][3]);
-    Access::store(moment[c].y, out[c][4]);
-    Access::store(moment[c].z, out[c][5]);
+    corners[6 * c] = force[c].x;
+    corners[6 * c + 1] = force[c].y;
+    corners[6 * c + 2] = force[c].z;
+    corners[6 * c + 3] = moment[c].x;
+    corners[6 * c + 4] = moment[c].y;
+    corners[6 * c + 5] = moment[c].z;
   }
-  for (Index lane = 0; lane < width && first + lane < block.count; ++lane) {
-    CornerForce* corners = k.corner_force + 3 * at(block.first + first + lane);
-    for (std::size_t c = 0; c < 3; ++c) {
-      double* target = &corners[c].force.x;
-      for (std::size_t component = 0; component < 6; ++component) {
-        target[component] = out[c][component][lane];
-      }
-    }
-  }
+  const Index used = block.count - first < width ? block.count - first : width;
+  store_rows(corners, &k.corner_force[3 * at(block.first + first)].force.x, 18, at(used));
 }
 
 template <class T>

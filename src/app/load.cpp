@@ -39,7 +39,7 @@ Case load_case(const fs::path& path) {
   ErrorList errors;
   loaded.deck = io::parse_deck(loaded.deck_bytes, path.string(), errors);
   errors.throw_if_any();
-  fill_intervals(loaded.deck, errors);
+  check_intervals(loaded.deck, errors);
   const std::vector<model::Mesh> meshes = io::load_meshes(loaded.deck, path.parent_path(), errors);
   if (!errors.empty()) {
     // Without all meshes no model; what can be said without them is said.
@@ -50,6 +50,7 @@ Case load_case(const fs::path& path) {
   errors.throw_if_any();
   io::check_output(loaded.deck.output, loaded.model, errors);
   errors.throw_if_any();
+  fill_intervals(loaded.model.run.safety * loaded.model.first_critical_step, loaded.deck);
   return loaded;
 }
 

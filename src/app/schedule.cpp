@@ -14,22 +14,33 @@ namespace {
 /// below anything that a user can mean.
 constexpr double same_part = 1.0e-6;
 constexpr double most_multiples = 1.0e7;
+/// Steps between moments of output that the deck leaves to the program: then they cost a tenth of the steps at most.
+constexpr double least_steps = 10.0;
 
 }  // namespace
 
-void fill_intervals(io::Deck& deck, ErrorList& errors) {
+void check_intervals(const io::Deck& deck, ErrorList& errors) {
   const double duration = deck.description.run.duration;
-  const auto fill = [&](const char* name, double& interval, double usual_parts) {
-    interval = interval > 0.0 ? interval : duration / usual_parts;
-    if (!(duration / interval <= most_multiples)) {
+  const auto check = [&](const char* name, double interval) {
+    if (interval > 0.0 && !(duration / interval <= most_multiples)) {
       errors.add(deck.output.place,
                  fmt::format("output.{} = {} would be written {:.3g} times", name, interval, duration / interval),
                  fmt::format(">= run.duration / {:.0e} = {}", most_multiples, duration / most_multiples),
                  "give a longer interval");
     }
   };
-  fill("results_interval", deck.output.results_interval, 50.0);
-  fill("history_interval", deck.output.history_interval, 500.0);
+  check("results_interval", deck.output.results_interval);
+  check("history_interval", deck.output.history_interval);
+}
+
+void fill_intervals(double step, io::Deck& deck) {
+  const double duration = deck.description.run.duration;
+  const double most_parts = std::max(1.0, std::floor(duration / (least_steps * step)));
+  const auto fill = [&](double& interval, double usual_parts) {
+    interval = interval > 0.0 ? interval : duration / std::min(usual_parts, most_parts);
+  };
+  fill(deck.output.results_interval, 50.0);
+  fill(deck.output.history_interval, 500.0);
 }
 
 Schedule::Schedule(double duration, double results_interval, double history_interval)

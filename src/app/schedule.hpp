@@ -8,8 +8,12 @@
 
 namespace fexp::app {
 
-/// Fills in output intervals that the deck leaves out, and reports those that would ask for more rows than any use.
-void fill_intervals(io::Deck& deck, ErrorList& errors);
+/// Reports output intervals that would ask for more rows than any use.
+void check_intervals(const io::Deck& deck, ErrorList& errors);
+
+/// Fills in output intervals that the deck leaves out: parts of the duration, but of a short run no more than every few
+/// steps, because output shortens them. `step` is the largest stable step [time].
+void fill_intervals(double step, io::Deck& deck);
 
 /// The moments of output: multiples of both intervals and the end. Multiples are counted, not added up, so none is
 /// missed or doubled by rounding, and moments that differ by rounding only are one.

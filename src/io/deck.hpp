@@ -20,8 +20,10 @@ namespace fexp::io {
 /// What to write and how often. Intervals are in time; whatever happens in between, frames and rows stand at their
 /// multiples exactly, and at the start and the end.
 struct OutputSettings {
-  double results_interval{-1.0};    ///< Between frames of the results file [time]; negative: duration / 50
-  double history_interval{-1.0};    ///< Between rows of the histories [time]; negative: duration / 500
+  double results_interval{
+      -1.0};  ///< Between frames of the results file [time]; negative: duration / 50, or ten steps if longer
+  double history_interval{
+      -1.0};  ///< Between rows of the histories [time]; negative: duration / 500, or ten steps if longer
   std::vector<std::string> nodes;   ///< Node sets whose nodes' motions are written
   std::vector<std::string> bodies;  ///< Bodies whose energies and motions are written
   int deflate{0};                   ///< Compression of the results file, 0 to 9
@@ -29,9 +31,11 @@ struct OutputSettings {
 
   static constexpr Range deflate_range{0.0, 9.0, true, true, "0 to 9"};
   static constexpr auto fields = std::tuple{
-      Field{"results_interval", "time", "Time between frames of the results file; duration / 50 when left out.",
+      Field{"results_interval", "time",
+            "Time between frames of the results file; when left out duration / 50, or about ten steps if longer.",
             &OutputSettings::results_interval, positive},
-      Field{"history_interval", "time", "Time between rows of the histories; duration / 500 when left out.",
+      Field{"history_interval", "time",
+            "Time between rows of the histories; when left out duration / 500, or about ten steps if longer.",
             &OutputSettings::history_interval, positive},
       Field{"nodes", "-", "Node sets whose nodes' motions are written as histories.", &OutputSettings::nodes},
       Field{"bodies", "-", "Bodies whose energies, momenta and centres are written as histories.",

@@ -77,11 +77,22 @@ TEST(schedule, an_interval_longer_than_the_run_leaves_start_and_end) {
 TEST(schedule, intervals_left_out_are_parts_of_the_duration) {
   io::Deck deck;
   deck.description.run.duration = 10.0;
-  ErrorList errors;
-  fill_intervals(deck, errors);
-  EXPECT_TRUE(errors.empty());
+  fill_intervals(1.0e-3, deck);
   EXPECT_EQ(deck.output.results_interval, 0.2);
   EXPECT_EQ(deck.output.history_interval, 0.02);
+}
+
+TEST(schedule, intervals_left_out_leave_ten_steps_between_moments_of_a_short_run) {
+  io::Deck deck;
+  deck.description.run.duration = 10.0;
+  fill_intervals(0.1, deck);  // 100 steps
+  EXPECT_EQ(deck.output.results_interval, 1.0);
+  EXPECT_EQ(deck.output.history_interval, 1.0);
+  deck.output.history_interval = 0.5;
+  deck.output.results_interval = -1.0;
+  fill_intervals(3.0, deck);  // less than ten steps
+  EXPECT_EQ(deck.output.results_interval, 10.0);
+  EXPECT_EQ(deck.output.history_interval, 0.5);
 }
 
 TEST(schedule, an_interval_that_would_give_endless_output_is_an_error) {
@@ -90,7 +101,7 @@ TEST(schedule, an_interval_that_would_give_endless_output_is_an_error) {
   deck.output.results_interval = 1.0e-9;
   deck.output.place = {"deck.toml", 7, 1};
   ErrorList errors;
-  fill_intervals(deck, errors);
+  check_intervals(deck, errors);
   ASSERT_EQ(errors.size(), 1U);
   EXPECT_EQ(errors.errors()[0].text(),
             "deck.toml:7:1: error: output.results_interval = 1e-09 would be written 1e+10 times; accepted: >= "

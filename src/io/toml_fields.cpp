@@ -145,7 +145,8 @@ void FieldReader::read(const TomlValue& value, const std::string& path, const Li
         "correct the number");
   } else if (number != 0.0 && (std::abs(number) > largest_number || std::abs(number) < smallest_number)) {
     add(value.line, value.column, fmt::format("{} is {}", path, number),
-        fmt::format("0, or a number from {} to {} in size", smallest_number, largest_number),
+        fmt::format("{}a number from {} to {} in size", limits.range.contains(0.0) ? "0, or " : "", smallest_number,
+                    largest_number),
         "correct the number, or choose other units");
   } else {
     out = number;

@@ -89,7 +89,7 @@ const Wrong wrong_decks[] = {
      "79:12: error: prescribed.velocity is 1e+200; accepted: 0, or a number from 1e-100 to 1e+100 in size",
      "cure: correct the number, or choose other units"},
     {"too_small_to_be_squared", "thickness = 0.5", "thickness = 1e-200",
-     "32:13: error: section.thickness is 1e-200; accepted: 0, or a number from 1e-100 to 1e+100 in size",
+     "32:13: error: section.thickness is 1e-200; accepted: a number from 1e-100 to 1e+100 in size",
      "cure: correct the number, or choose other units"},
     {"count_beyond_range", "count = [2, 1, 3]", "count = [2, 100000000, 3]",
      "56:13: error: body.array.count[2] is 100000000", "cure: correct the number"},

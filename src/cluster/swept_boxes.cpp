@@ -74,7 +74,11 @@ std::vector<Box> swept_boxes(const model::Model& model, const model::State& stat
   std::vector<Box> boxes(model.bodies.size());
   parallel::for_each(model.body_count(), body_grain, [&](Index b) {
     double reach = 0.0;
-    const Box box = node_box(model, state, model.bodies[at(b)], reach);
+    Box box = node_box(model, state, model.bodies[at(b)], reach);
+    for (const model::ContactSide& side : state.sides[at(b)]) {
+      box.include(state.motion[at(side.node)].position);
+      box.include(state.motion[at(model.triangle[at(side.element)][0])].position);
+    }
     boxes[at(b)] = box.grown(allowance[at(b)] + reach);
   });
   return boxes;

@@ -17,7 +17,8 @@ namespace fexp::cluster {
                                                    Index steps);
 
 /// Each body's present box grown by its allowance, its half thickness and the margin within which contact remembers
-/// sides [length], shape [bodies].
+/// sides [length], shape [bodies]. A box reaches to every body that the body's remembered sides name, so that these are
+/// in one island however deep a node has come through.
 [[nodiscard]] std::vector<Box> swept_boxes(const model::Model& model, const model::State& state,
                                            std::span<const double> allowance);
 

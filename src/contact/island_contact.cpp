@@ -14,9 +14,16 @@ namespace {
 constexpr double skin_part = 0.4;
 /// A search is due when this part of the skin is used up, however it was measured.
 constexpr double worn_part = 0.8;
+/// By how much more than its velocity says a step moves a node, as a part of its coordinates.
+constexpr double rounding = 1.0e-15;
 constexpr Index rows_per_piece = 64;
 constexpr Index piece_grain = 4;
 constexpr Index node_grain = 4096;
+
+double rounded_way(const Box& box) noexcept {
+  return rounding * std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z), std::abs(box.high.x),
+                              std::abs(box.high.y), std::abs(box.high.z)});
+}
 
 bool by_pair(const model::ContactSide& a, const model::ContactSide& b) noexcept {
   return a.node != b.node ? a.node < b.node : a.element < b.element;
@@ -78,20 +85,22 @@ void IslandContact::store_sides(const model::Model& model, model::State& state) 
 
 /// Largest distance between the displacements of any two nodes since the last search: the diagonal of their box. It
 /// does not grow while the island flies as a whole.
-double IslandContact::relative_motion(const Positions& x) const {
-  Box box;
+double IslandContact::relative_motion(const Positions& x) {
+  Box moved, present;
   const std::span<const Index> nodes = search_.nodes();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    box.include(x(nodes[i]) - searched_at_[i]);
+    moved.include(x(nodes[i]) - searched_at_[i]);
+    present.include(x(nodes[i]));
   }
-  return norm(box.high - box.low);
+  rounded_way_ = rounded_way(present);
+  return norm(moved.high - moved.low) + rounded_way_;
 }
 
 void IslandContact::advance(const model::Model& model, const model::NodeMotion* motion, double largest_way) {
   if (!enabled_ || !searched_) {
     return;
   }
-  moved_ += 2.0 * largest_way;
+  moved_ += 2.0 * (largest_way + rounded_way_);
   if (moved_ <= skin_) {
     return;
   }
@@ -113,6 +122,11 @@ void IslandContact::search(const model::Model& model, const Positions& x) {
   const std::span<const Index> nodes = search_.nodes();
   searched_at_.resize(nodes.size());
   parallel::for_each(search_.node_count(), node_grain, [&](Index i) { searched_at_[at(i)] = x(nodes[at(i)]); });
+  Box box;
+  for (const Vec3d& point : searched_at_) {
+    box.include(point);
+  }
+  rounded_way_ = rounded_way(box);
   cut_into_pieces(memory);
   moved_ = 0.0;
   searched_ = true;

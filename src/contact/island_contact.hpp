@@ -69,7 +69,7 @@ class IslandContact {
   void add(const model::Model& model, const Positions& x, const ActivePair& pair, NodeContact& nodes,
            BodyContact* bodies);
   [[nodiscard]] std::vector<model::ContactSide> all_sides() const;
-  [[nodiscard]] double relative_motion(const Positions& x) const;
+  [[nodiscard]] double relative_motion(const Positions& x);
   [[nodiscard]] static Index owner(const model::Model& model, Index node, Index element);
 
   CandidateSearch search_;
@@ -78,7 +78,8 @@ class IslandContact {
   std::vector<Vec3d> searched_at_;  // [search_.nodes()]: positions at the last search
   std::vector<Index> bodies_;
   double skin_{};
-  double moved_{};  ///< Bound of the relative motion of any two nodes since the last search [length]
+  double moved_{};        ///< Bound of the relative motion of any two nodes since the last search [length]
+  double rounded_way_{};  ///< Bound of what rounding adds to a node's way in a step [length]
   bool enabled_{};
   bool searched_{};
   ContactReport report_;

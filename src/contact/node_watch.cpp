@@ -8,7 +8,7 @@ namespace fexp::contact {
 
 namespace {
 
-/// Normals of neighbours that enclose less than 60 degrees count as one smooth surface: there only the closest face
+/// Neighbours that push in directions less than 60 degrees apart count as one smooth surface: there only the closest
 /// pushes, so that a node sliding over an edge never feels two. In sharper valleys both faces push.
 constexpr double smooth_cosine = 0.5;
 /// Triangles that a node may pass in one step while it is followed.
@@ -20,7 +20,9 @@ const model::ContactSide* find(std::span<const model::ContactSide> memory, Index
   return found != memory.end() && found->element == element ? &*found : nullptr;
 }
 
-bool by_element(const model::ContactSide& a, const model::ContactSide& b) noexcept { return a.element < b.element; }
+bool by_element(const model::ContactSide& a, const model::ContactSide& b) noexcept {
+  return a.element != b.element ? a.element < b.element : a.side < b.side;
+}
 bool same_element(const model::ContactSide& a, const model::ContactSide& b) noexcept { return a.element == b.element; }
 
 }  // namespace
@@ -55,8 +57,9 @@ void NodeWatch::recall(std::span<const model::ContactSide> memory) {
 /// Candidates, remembered elements, and those on to which the node has slid from a remembered one that it has come
 /// through: there it may be at a depth at which nobody else would look for it.
 void NodeWatch::gather(std::span<const Index> candidates, std::span<const model::ContactSide> memory) {
-  elements_.assign(candidates.begin(), candidates.end());
   deep_.clear();
+  through_.clear();
+  elements_.assign(candidates.begin(), candidates.end());
   if (memory.empty()) {
     return;
   }
@@ -80,6 +83,7 @@ void NodeWatch::follow(const model::ContactSide& known) {
   if (!w.is_through(known.side)) {
     return;
   }
+  through_.push_back(known);
   for (int hop = 0; hop < most_hops && !w.acts; ++hop) {
     if (!may_touch(model_, node_, w.closer)) {
       return;
@@ -130,16 +134,18 @@ void NodeWatch::measure() {
   watched_.clear();
   for (const Index element : elements_) {
     const double watch = watch_distance(model_, node_, element);
-    if (closest_on(model_, now_, element, point_).distance2 < watch * watch || find(deep_, element) != nullptr) {
+    const bool near = closest_on(model_, now_, element, point_).distance2 < watch * watch;
+    if (near || find(deep_, element) != nullptr) {
       watched_.push_back(measured(element));
     }
   }
 }
 
-/// Side of a remembered element that is next to this one, of those across an edge first; 0 when there is none.
-int NodeWatch::inherited_side(Index element, std::span<const model::ContactSide> memory) const {
+/// Where a node belongs that has come through an element next to this one, those across an edge first; 0 when it has
+/// not: then it belongs where it came from.
+int NodeWatch::inherited_side(Index element) const {
   int side = 0;
-  for (const model::ContactSide& known : memory) {
+  for (const model::ContactSide& known : through_) {
     const auto& across = model_.neighbour[at(element)];
     if (across[0] == known.element || across[1] == known.element || across[2] == known.element) {
       return known.side;
@@ -151,34 +157,59 @@ int NodeWatch::inherited_side(Index element, std::span<const model::ContactSide>
   return side;
 }
 
+/// Whether the node was behind the element before this step, or may have come through it in the step. Otherwise it has
+/// gone round an edge: the element was remembered for the sake of a closer neighbour.
+bool NodeWatch::could_come_through(const Watched& w, int home) const {
+  const auto& t = model_.triangle[at(w.element)];
+  Vec3d way = point_ - before_(node_);
+  for (std::size_t a = 0; a < 3; ++a) {
+    way -= w.closest.weight[a] * (now_(t[a]) - before_(t[a]));
+  }
+  if (w.distance <= 2.0 * norm(way)) {
+    return true;
+  }
+  const auto closest = closest_on(model_, before_, w.element, before_(node_));
+  const View view = view_of(model_, before_, w.element, closest);
+  return view.agreed && view.side != home;
+}
+
 void NodeWatch::decide_sides(std::span<const model::ContactSide> memory) {
   for (Watched& w : watched_) {
     if (w.rim) {
       w.side = w.view.side;
     } else if (const model::ContactSide* known = find(memory, w.element)) {
-      w.side = known->side;
+      w.side = w.acts && w.is_through(known->side) && !could_come_through(w, known->side) ? w.view.side : known->side;
     } else if (const model::ContactSide* deep = find(deep_, w.element)) {
       w.side = deep->side;
     } else {
-      w.side = inherited_side(w.element, memory);
+      w.side = inherited_side(w.element);
     }
     if (w.side == 0) {
       w.side = view_of(model_, before_, w.element, closest_on(model_, before_, w.element, before_(node_))).side;
     }
   }
-  // Where a neighbour is closer, its side is what counts: a node that goes round a rim takes the others along. A closer
-  // neighbour that is not watched is the node's own element, and until the node stands before the face itself there is
-  // nothing to remember.
+  // Where a neighbour is closer, its side is what counts, and so on to the closest of all: a node that goes round a rim
+  // takes all others along. A closer neighbour that is not watched is the node's own element, and until the node stands
+  // before the face itself there is nothing to remember.
+  const auto watched = [&](Index element) {
+    const auto found = std::lower_bound(watched_.begin(), watched_.end(), element,
+                                        [](const Watched& w, Index wanted) { return w.element < wanted; });
+    return found != watched_.end() && found->element == element ? &*found : nullptr;
+  };
   for (Watched& w : watched_) {
     if (w.acts) {
       continue;
     }
-    const auto closer =
-        std::find_if(watched_.begin(), watched_.end(), [&](const Watched& other) { return other.element == w.closer; });
-    if (closer == watched_.end()) {
+    const Watched* closest = watched(w.closer);
+    if (closest == nullptr) {
       w.side = dot(w.closest.offset, w.normal) < 0.0 ? -1 : 1;
-    } else if (closer->acts) {
-      w.side = closer->side;
+      continue;
+    }
+    while (closest != nullptr && !closest->acts) {
+      closest = watched(closest->closer);
+    }
+    if (closest != nullptr) {
+      w.side = closest->side;
     }
   }
 }
@@ -189,16 +220,48 @@ bool NodeWatch::share_corner(Index a, Index b) const {
   return std::any_of(s.begin(), s.end(), [&](Index n) { return n == t[0] || n == t[1] || n == t[2]; });
 }
 
+/// Direction of the force on the node. The offset gives it while it has one; a node on the very surface is pushed along
+/// the normal.
+Vec3d NodeWatch::direction(const Watched& w) {
+  if (w.closest.feature == physics::Feature::face || !(w.distance > 0.0)) {
+    return static_cast<double>(w.side) * w.normal;
+  }
+  return ((w.is_through(w.side) ? -1.0 : 1.0) / w.distance) * w.closest.offset;
+}
+
+/// Whether the closest points lie on features that have a corner in common.
+bool NodeWatch::are_neighbours(const Watched& a, const Watched& b) const {
+  const auto &s = model_.triangle[at(a.element)], &t = model_.triangle[at(b.element)];
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (s[i] == t[j] && a.closest.weight[i] > physics::feature_tolerance &&
+          b.closest.weight[j] > physics::feature_tolerance) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// A smooth hollow may have several closest points, on faces, edges and corners. A node that has come through a body is
+/// pushed back through what is closest of it, not out of every wall it sees from inside. All that is compared here is
+/// the same whichever element stands for an edge or a corner.
 void NodeWatch::leave_one_of_smooth_neighbours() {
-  const auto is_face = [](const Watched& w) { return w.acts && w.closest.feature == physics::Feature::face; };
+  const auto both_through = [&](const Watched& a, const Watched& b) {
+    return a.side == b.side && a.is_through(a.side) && b.is_through(b.side) &&
+           body_of_element(model_, a.element) == body_of_element(model_, b.element);
+  };
   for (Watched& w : watched_) {
     for (const Watched& other : watched_) {
       const bool nearer = other.closest.distance2 < w.closest.distance2 ||
                           (other.closest.distance2 == w.closest.distance2 && other.element < w.element);
-      // A face that has been beaten itself still beats: what is closest of all decides.
-      if (nearer && other.element != w.element && is_face(w) && other.closest.feature == physics::Feature::face &&
-          other.side == w.side && dot(other.normal, w.normal) > smooth_cosine &&
-          share_corner(other.element, w.element)) {
+      // Seen through the other one: they meet at a sharp fold.
+      const bool hidden = other.view.agreed && w.view.agreed && other.view.side != w.view.side &&
+                          share_corner(other.element, w.element);
+      // One that has been beaten itself still beats: what is closest of all decides.
+      if (w.acts && nearer && other.closer == no_index && other.element != w.element &&
+          (hidden || both_through(other, w) ||
+           (dot(direction(other), direction(w)) > smooth_cosine && are_neighbours(other, w)))) {
         w.acts = false;
       }
     }
@@ -224,8 +287,26 @@ double NodeWatch::contact_distance(const Watched& w) const {
   return reference2 < distance * distance ? std::sqrt(reference2) : distance;
 }
 
+/// Series of the node and the corners, these by their weights: what barriers give way is nothing. Elements that share
+/// an edge or a corner give the same there, and no corner gets more than its own stiffness allows.
+double NodeWatch::stiffness(const Watched& w) const {
+  if (model_.contact.stiffness >= 0.0) {
+    return model_.contact.stiffness;
+  }
+  double compliance = 0.0;
+  if (!model_.bodies[at(model_.node_body[at(node_)])].barrier) {
+    compliance = 1.0 / model_.contact_stiffness[at(node_)];
+  }
+  if (!model_.bodies[at(body_of_element(model_, w.element))].barrier) {
+    const auto& t = model_.triangle[at(w.element)];
+    for (std::size_t a = 0; a < 3; ++a) {
+      compliance += w.closest.weight[a] / model_.contact_stiffness[at(t[a])];
+    }
+  }
+  return 1.0 / compliance;
+}
+
 void NodeWatch::push(std::vector<ActivePair>& active) const {
-  const bool barrier_node = model_.bodies[at(model_.node_body[at(node_)])].barrier;
   for (const Watched& w : watched_) {
     if (!w.acts) {
       continue;
@@ -236,25 +317,12 @@ void NodeWatch::push(std::vector<ActivePair>& active) const {
     if (!(depth > 0.0)) {
       continue;
     }
-    const auto& t = model_.triangle[at(w.element)];
-    const double mine = model_.contact_stiffness[at(node_)];
-    const double theirs = std::min(
-        {model_.contact_stiffness[at(t[0])], model_.contact_stiffness[at(t[1])], model_.contact_stiffness[at(t[2])]});
-    const bool barrier_element = model_.bodies[at(body_of_element(model_, w.element))].barrier;
     ActivePair pair;
-    pair.stiffness = model_.contact.stiffness >= 0.0 ? model_.contact.stiffness
-                     : barrier_node                  ? theirs
-                     : barrier_element               ? mine
-                                                     : mine * theirs / (mine + theirs);
-    // The offset gives the direction while it has one; a node on the very surface is pushed along the normal.
-    const double sign = through ? -1.0 : 1.0;
-    const bool face = w.closest.feature == physics::Feature::face;
-    const Vec3d direction =
-        face || !(w.distance > 0.0) ? static_cast<double>(w.side) * w.normal : (sign / w.distance) * w.closest.offset;
+    pair.stiffness = stiffness(w);
     pair.node = node_;
     pair.element = w.element;
     pair.weight = w.closest.weight;
-    pair.force = (pair.stiffness * depth) * direction;
+    pair.force = (pair.stiffness * depth) * direction(w);
     pair.energy = 0.5 * pair.stiffness * depth * depth;
     pair.depth = distance > 0.0 ? depth / distance : HUGE_VAL;
     active.push_back(pair);

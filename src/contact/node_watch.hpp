@@ -68,8 +68,12 @@ class NodeWatch {
 
   [[nodiscard]] double depth_limit(Index element) const;
   [[nodiscard]] Watched measured(Index element) const;
-  [[nodiscard]] int inherited_side(Index element, std::span<const model::ContactSide> memory) const;
+  [[nodiscard]] bool could_come_through(const Watched& watched, int home) const;
+  [[nodiscard]] int inherited_side(Index element) const;
   [[nodiscard]] double contact_distance(const Watched& watched) const;
+  [[nodiscard]] double stiffness(const Watched& watched) const;
+  [[nodiscard]] static Vec3d direction(const Watched& watched);
+  [[nodiscard]] bool are_neighbours(const Watched& a, const Watched& b) const;
   [[nodiscard]] bool share_corner(Index a, Index b) const;
 
   const model::Model& model_;
@@ -79,7 +83,8 @@ class NodeWatch {
   Index node_{};
   Vec3d point_;
   std::vector<Index> elements_;
-  std::vector<model::ContactSide> deep_;  ///< Elements that the node has come through and where it belongs
+  std::vector<model::ContactSide> deep_;     ///< Elements that the node has come through and where it belongs
+  std::vector<model::ContactSide> through_;  ///< Of those remembered, the ones that the node has come through
   std::vector<Watched> watched_;
 };
 

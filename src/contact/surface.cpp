@@ -20,6 +20,33 @@ bool has_free_edge_at(const model::Model& model, Index element, Index node) noex
   return false;
 }
 
+/// Steepest view from the elements at that edge of the closest corner which leads least away from the point.
+double view_at_outermost_edge(const model::Model& model, const Positions& x, Index element,
+                              const physics::ClosestPoint& closest) noexcept {
+  const Index node = model.triangle[at(element)][physics::number_of(closest.feature)];
+  double outermost = -HUGE_VAL, steepest = 0.0;
+  const auto look_along_edges = [&](Index seen) {
+    for (const Index end : model.triangle[at(seen)]) {
+      if (end == node) {
+        continue;
+      }
+      const Vec3d edge = x(end) - x(node);
+      const double reach = dot(closest.offset, edge) / norm(edge);
+      if (reach > outermost) {
+        outermost = reach;
+        steepest = 0.0;
+      }
+      if (reach == outermost) {
+        const double view = dot(closest.offset, unit_normal(model, x, seen));
+        steepest = std::abs(view) > std::abs(steepest) ? view : steepest;
+      }
+    }
+  };
+  look_along_edges(element);
+  for_each_sharing(model, element, closest.feature, look_along_edges);
+  return steepest;
+}
+
 }  // namespace
 
 bool is_on_rim(const model::Model& model, Index element, Feature feature) noexcept {
@@ -44,14 +71,18 @@ Vec3d unit_normal(const model::Model& model, const Positions& x, Index element) 
 
 View view_of(const model::Model& model, const Positions& x, Index element,
              const physics::ClosestPoint& closest) noexcept {
-  double steepest = dot(closest.offset, unit_normal(model, x, element));
-  double lowest = steepest, highest = steepest;
-  for_each_sharing(model, element, closest.feature, [&](Index other) {
-    const double view = dot(closest.offset, unit_normal(model, x, other));
+  double steepest = 0.0, lowest = HUGE_VAL, highest = -HUGE_VAL;
+  const auto look_from = [&](Index seen) {
+    const double view = dot(closest.offset, unit_normal(model, x, seen));
     steepest = std::abs(view) > std::abs(steepest) ? view : steepest;
     lowest = view < lowest ? view : lowest;
     highest = view > highest ? view : highest;
-  });
+  };
+  look_from(element);
+  for_each_sharing(model, element, closest.feature, look_from);
+  if (physics::is_corner(closest.feature)) {
+    steepest = view_at_outermost_edge(model, x, element, closest);
+  }
   return {steepest < 0.0 ? -1 : 1, lowest >= 0.0 || highest <= 0.0};
 }
 

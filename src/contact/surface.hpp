@@ -49,11 +49,13 @@ void for_each_sharing(const model::Model& model, Index element, physics::Feature
 
 /// How a point sees the surface round its closest point.
 struct View {
-  int side{};     ///< +1 where the normals point, -1 behind; the element with the steepest view decides
+  int side{};     ///< +1 where the normals point, -1 behind
   bool agreed{};  ///< All elements that share the feature say the same; off the tip of a sharp fold they do not
 };
 
-/// At an edge or a corner the element with the steepest view is right for every fold.
+/// At an edge the element with the steepest view says which side it is. At a corner that edge does which leads least
+/// away from the point, with its elements: seen along the line from the point through the corner it is the outermost
+/// one, which is convex. So the side is right at every fold and every spike.
 [[nodiscard]] View view_of(const model::Model& model, const Positions& x, Index element,
                            const physics::ClosestPoint& closest) noexcept;
 

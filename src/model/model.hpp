@@ -104,7 +104,7 @@ struct Model {
   std::vector<double> inertia;               ///< Lumped isotropic, scaled rotary inertia [mass*length^2]
   std::vector<double> half_thickness;        ///< Half of the thickest shell at the node [length]
   /// Penalty stiffness of the node, c^2 m / dt^2 with the first critical step, times penalty_scale [force/length]. A
-  /// pair's stiffness is the series combination of its node and the softest triangle corner.
+  /// pair's stiffness is the series combination of its node and the triangle's corners by their weights.
   std::vector<double> contact_stiffness;
   std::vector<double> node_size;  ///< Square root of the smallest element area at the node [length]
   std::vector<Index> node_body;

@@ -26,8 +26,9 @@ struct ClosestPoint {
 };
 
 /// Weights below this count as zero when the feature is named, so that triangles which share an edge or a corner name
-/// the same one although each is rounded on its own.
-inline constexpr double feature_tolerance = 1.0e-9;
+/// the same one although each is rounded on its own. Its square is well above rounding: where one triangle names the
+/// face, the distance to its neighbour's edge is larger by more than rounding.
+inline constexpr double feature_tolerance = 1.0e-6;
 
 [[nodiscard]] inline Feature feature_of(const std::array<double, 3>& weight) noexcept {
   const bool a = weight[0] > feature_tolerance, b = weight[1] > feature_tolerance, c = weight[2] > feature_tolerance;

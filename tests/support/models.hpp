@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "model/state.hpp"
@@ -28,8 +29,12 @@ inline std::vector<Index> nodes_of(const model::Model& model, std::string_view s
 class DirectRun {
  public:
   explicit DirectRun(const model::Model& model, solve::KernelChoice kernel = solve::KernelChoice::automatic)
+      : DirectRun(model, model::initial_state(model), kernel) {}
+
+  /// Takes up a run at a state.
+  DirectRun(const model::Model& model, model::State from, solve::KernelChoice kernel = solve::KernelChoice::automatic)
       : model_(model),
-        state(model::initial_state(model)),
+        state(std::move(from)),
         workspace(model, solve::select_element_kernel(kernel)),
         allowance_(model.bodies.size(), HUGE_VAL) {
     std::vector<Index> bodies;
@@ -50,6 +55,9 @@ class DirectRun {
     state.time = report.steps_done == steps ? end_time : state.time + static_cast<double>(report.steps_done) * dt;
     return report;
   }
+
+  /// Writes what only the island knows to the state.
+  void store() { island_.store(model_, state); }
 
  private:
   const model::Model& model_;

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+#include <utility>
+
+#include "contact/candidates.hpp"
+#include "model/state.hpp"
+#include "support/contact.hpp"
+
+namespace fexp::contact {
+namespace {
+
+using Pair = std::pair<Index, Index>;
+
+/// Three bodies of different mesh size and thickness, close together.
+model::Model bodies_of_all_sizes(bool self, bool exclude) {
+  auto d = test::description(test::rubber, 0.05);
+  d.sections.push_back({"thick", "m", 0.4, {}});
+  d.contact.enabled = true;
+  d.contact.self = self;
+  test::add_body(d, "coarse", test::plate(3.0, 3.0, 3, 3)).translate = {-1.5, -1.5, 0.0};
+  test::add_body(d, "fine", model::CubedSphere{0.5, 4}).translate = {0.0, 0.0, 0.8};
+  test::add_body(d, "thick", model::Cylinder{0.4, 1.0, 8, 5, 360.0}).translate = {0.9, 0.0, 0.1};
+  d.bodies.back().section = "thick";
+  if (exclude) {
+    d.contact.exclude.push_back({"coarse", "thick"});
+  }
+  return test::build(d);
+}
+
+/// All pairs that may touch within `reach` beyond watch distance, by a loop over all.
+std::set<Pair> slow_pairs(const model::Model& model, const Positions& x, double reach) {
+  std::set<Pair> pairs;
+  for (Index n = 0; n < model.node_count(); ++n) {
+    for (Index e = 0; e < model.element_count(); ++e) {
+      if (may_touch(model, n, e) &&
+          std::sqrt(closest_on(model, x, e, x(n)).distance2) < watch_distance(model, n, e) + reach) {
+        pairs.emplace(n, e);
+      }
+    }
+  }
+  return pairs;
+}
+
+std::set<Pair> pairs_of(const Candidates& c) {
+  std::set<Pair> pairs;
+  for (std::size_t row = 0; row < c.node.size(); ++row) {
+    for (Index i = c.start[row]; i < c.start[row + 1]; ++i) {
+      pairs.emplace(c.node[row], c.element[at(i)]);
+    }
+  }
+  EXPECT_EQ(pairs.size(), c.element.size()) << "a pair comes twice";
+  return pairs;
+}
+
+std::vector<Index> all_bodies(const model::Model& model) {
+  std::vector<Index> bodies;
+  for (Index b = 0; b < model.body_count(); ++b) {
+    bodies.push_back(b);
+  }
+  return bodies;
+}
+
+TEST(candidates, are_those_of_a_loop_over_all_pairs) {
+  for (const bool self : {false, true}) {
+    for (const bool exclude : {false, true}) {
+      const model::Model model = bodies_of_all_sizes(self, exclude);
+      CandidateSearch search;
+      search.assign(model, all_bodies(model));
+      model::State state = model::initial_state(model);
+      std::mt19937 random(1);
+      std::uniform_real_distribution<double> shift(-0.1, 0.1);
+      for (const double skin : {0.0, 0.05, 0.3}) {
+        for (model::NodeMotion& m : state.motion) {
+          m.position += Vec3d{shift(random), shift(random), shift(random)};
+        }
+        const Positions x{state.motion.data(), 0.0};
+        Candidates found;
+        search.search(model, x, skin, {}, found);
+        EXPECT_EQ(pairs_of(found), slow_pairs(model, x, skin));
+        EXPECT_GT(found.element.size(), 100U);
+      }
+    }
+  }
+}
+
+TEST(candidates, ascend_and_give_remembered_nodes_a_row_and_each_row_the_slack_of_its_nearest_pair) {
+  const model::Model model = bodies_of_all_sizes(true, false);
+  CandidateSearch search;
+  search.assign(model, all_bodies(model));
+  const model::State state = model::initial_state(model);
+  const Positions x{state.motion.data(), 0.0};
+  Candidates found;
+  const std::vector<Index> remembered{0, 0, 3, 17, model.node_count() - 1};
+  search.search(model, x, 0.05, remembered, found);
+  EXPECT_TRUE(std::is_sorted(found.node.begin(), found.node.end()));
+  for (const Index node : remembered) {
+    EXPECT_TRUE(std::binary_search(found.node.begin(), found.node.end(), node));
+  }
+  for (std::size_t row = 0; row < found.node.size(); ++row) {
+    double least = HUGE_VAL;
+    for (Index i = found.start[row]; i < found.start[row + 1]; ++i) {
+      const Index e = found.element[at(i)], n = found.node[row];
+      EXPECT_TRUE(i == found.start[row] || found.element[at(i - 1)] < e);
+      least = std::min(least, std::sqrt(closest_on(model, x, e, x(n)).distance2) - watch_distance(model, n, e));
+    }
+    EXPECT_LE(found.slack[row], least);
+    EXPECT_TRUE(least == HUGE_VAL || found.slack[row] > least - 1e-6);
+  }
+}
+
+/// Bodies that fly, turn and breathe at random; all positions are a smooth function of time.
+class Dance {
+ public:
+  Dance(const model::Model& model, unsigned seed, double speed) : model_(model), random_(seed) {
+    std::uniform_real_distribution<double> number(-1.0, 1.0);
+    const auto vector = [&] { return Vec3d{number(random_), number(random_), number(random_)}; };
+    for (Index b = 0; b < model.body_count(); ++b) {
+      velocity_.push_back(speed * vector());
+      spin_.push_back((3.0 * speed) * vector());
+      wave_.push_back(3.0 * vector());
+      amplitude_.push_back((0.3 * speed) * vector());
+    }
+    common_ = (10.0 * speed) * vector();
+  }
+
+  /// Positions after a step of `dt`, and the largest way that any node has gone.
+  double step(model::State& state, double time, double dt) {
+    double largest = 0.0;
+    for (Index n = 0; n < model_.node_count(); ++n) {
+      const auto b = at(model_.node_body[at(n)]);
+      const Vec3d r = model_.reference_position[at(n)] - Vec3d{0.0, 0.0, 0.5};
+      const Vec3d v = common_ + std::cos(time) * velocity_[b] + cross(spin_[b], r) +
+                      std::cos(dot(wave_[b], r) + 4.0 * time) * amplitude_[b];
+      model::NodeMotion& m = state.motion[at(n)];
+      m.velocity = v;
+      m.position += dt * v;
+      largest = std::max(largest, norm(v));
+    }
+    return largest * dt;
+  }
+
+ private:
+  const model::Model& model_;
+  std::mt19937 random_;
+  std::vector<Vec3d> velocity_, spin_, wave_, amplitude_;
+  Vec3d common_;
+};
+
+TEST(candidates, no_pair_within_watch_distance_is_missed_over_random_motions) {
+  const model::Model model = bodies_of_all_sizes(true, false);
+  Index searches = 0;
+  std::size_t watched = 0;
+  constexpr int steps = 120;
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    Dance dance(model, seed, std::pow(10.0, -1.0 - 0.25 * seed));
+    model::State state = model::initial_state(model);
+    test::Contact contact(model, state);
+    contact.evaluate(model, state, 0.0);
+    ContactReport report;
+    for (int i = 0; i < steps; ++i) {
+      const double dt = 0.02, way = dance.step(state, i * dt, dt);
+      contact.island.advance(model, state.motion.data(), way);
+      report = contact.evaluate(model, state, dt);
+      contact.island.store_sides(model, state);
+      std::set<Pair> remembered;
+      for (const auto& sides : state.sides) {
+        for (const model::ContactSide& s : sides) {
+          remembered.emplace(s.node, s.element);
+        }
+      }
+      for (const Pair& pair : slow_pairs(model, {state.motion.data(), 0.0}, 0.0)) {
+        ASSERT_TRUE(remembered.count(pair))
+            << "seed " << seed << " step " << i << " node " << pair.first << " element " << pair.second;
+        ++watched;
+      }
+    }
+    searches += report.searches;
+  }
+  // The claim is about steps without a search.
+  EXPECT_LT(searches, 6 * steps / 2);
+  EXPECT_GT(watched, 1000U);
+}
+
+}  // namespace
+}  // namespace fexp::contact

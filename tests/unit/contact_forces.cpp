@@ -214,8 +214,8 @@ TEST(contact_force, is_that_of_exactly_one_pair_over_smooth_neighbours_their_edg
         }
       }
       for (int i = 0; i < 200; ++i) {
-        const double along = place(random), across = place(random);
-        check({along, across, tilt * std::sin(along + 0.7 * across)});
+        const double right = place(random), up = place(random);
+        check({right, up, tilt * std::sin(right + 0.7 * up)});
       }
     }
   }

@@ -25,8 +25,11 @@ class LatticeMesh {
     }
     return it->second;
   }
-  /// Two triangles of the quadrilateral a b c d, cut along a-c, or along b-d when `other`.
-  void quad(Index a, Index b, Index c, Index d, bool other) {
+  /// Two triangles of the quadrilateral a b c d, cut along a-c, or along b-d when `other`. Its corners come as a list,
+  /// whose entries are evaluated in order: arguments may be evaluated in any order, which would number nodes otherwise
+  /// with another compiler.
+  void quad(const std::array<Index, 4>& corners, bool other) {
+    const auto [a, b, c, d] = corners;
     if (other) {
       triangle(a, b, d);
       triangle(b, c, d);
@@ -78,7 +81,7 @@ Mesh make(const CubedSphere& s) {
       for (int i = 0; i < n; ++i) {
         // Diagonals point to the middle of the side, which keeps the triangles' angles even.
         const bool other = (2 * i + 1 < n) == (2 * j + 1 < n);
-        mesh.quad(node(side, i, j), node(side, i + 1, j), node(side, i + 1, j + 1), node(side, i, j + 1), !other);
+        mesh.quad({node(side, i, j), node(side, i + 1, j), node(side, i + 1, j + 1), node(side, i, j + 1)}, !other);
       }
     }
   }
@@ -103,7 +106,7 @@ Mesh make(const UvSphere& s) {
       } else if (ring == s.rings - 1) {
         mesh.triangle(a, b, d);
       } else {
-        mesh.quad(a, b, c, d, false);
+        mesh.quad({a, b, c, d}, false);
       }
     }
   }
@@ -127,7 +130,7 @@ Mesh make(const Plate& p) {
         mesh.triangle(c, d, m);
         mesh.triangle(d, a, m);
       } else {
-        mesh.quad(a, b, c, d, p.diagonals == "alternating" && (i + j) % 2 == 1);
+        mesh.quad({a, b, c, d}, p.diagonals == "alternating" && (i + j) % 2 == 1);
       }
     }
   }
@@ -144,7 +147,7 @@ Mesh make(const Cylinder& c) {
   };
   for (int k = 0; k < c.cells_along; ++k) {
     for (int i = 0; i < c.cells_around; ++i) {
-      mesh.quad(node(i, k), node(i + 1, k), node(i + 1, k + 1), node(i, k + 1), false);
+      mesh.quad({node(i, k), node(i + 1, k), node(i + 1, k + 1), node(i, k + 1)}, false);
     }
   }
   return mesh.take();
@@ -162,7 +165,7 @@ Mesh make(const SquareTube& t) {
   };
   for (int k = 0; k < t.cells_along; ++k) {
     for (int i = 0; i < 4 * n; ++i) {
-      mesh.quad(node(i, k), node(i + 1, k), node(i + 1, k + 1), node(i, k + 1), (i + k) % 2 == 1);
+      mesh.quad({node(i, k), node(i + 1, k), node(i + 1, k + 1), node(i, k + 1)}, (i + k) % 2 == 1);
     }
   }
   return mesh.take();
@@ -188,7 +191,7 @@ Mesh make(const OpenBox& b) {
     };
     for (int j = 0; j < nv; ++j) {
       for (int i = 0; i < nu; ++i) {
-        mesh.quad(node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1), (i + j) % 2 == 1);
+        mesh.quad({node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)}, (i + j) % 2 == 1);
       }
     }
   }

@@ -9,75 +9,36 @@
 #include <string>
 
 #include "model/build.hpp"
+#include "support/damage.hpp"
 #include "support/decks.hpp"
 
 namespace fexp::io {
 namespace {
 
-/// Damages a deck at random: bytes, lines and words changed, removed, repeated, moved, or replaced by nasty ones.
-std::string damaged(std::string text, std::mt19937& random) {
-  constexpr const char* nasty[] = {"0",
-                                   "-1",
-                                   "1e400",
-                                   "1e200",
-                                   "nan",
-                                   "-inf",
-                                   "9223372036854775807",
-                                   "[",
-                                   "]",
-                                   "{",
-                                   "}",
-                                   "[[]]",
-                                   "{}",
-                                   "\"\"",
-                                   "\"all\"",
-                                   "true",
-                                   "\"x",
-                                   "'''",
-                                   "1.5",
-                                   "a.b.c",
-                                   "[[body]]",
-                                   "[run]",
-                                   "2020-01-01T00:00:00",
-                                   "\\u0000"};
-  const auto below = [&random](std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random()) % n; };
-  const std::size_t changes = 1 + below(3);
-  for (std::size_t i = 0; i < changes && !text.empty(); ++i) {
-    const std::size_t begin = below(text.size()), length = 1 + below(std::min<std::size_t>(60, text.size() - begin));
-    const std::size_t line = text.rfind('\n', begin) + 1, line_end = std::min(text.find('\n', begin), text.size());
-    switch (below(8)) {
-      case 0:
-        text[begin] = static_cast<char>(random() & 0xffU);
-        break;
-      case 1:
-        text.resize(begin);
-        break;
-      case 2:
-        text.erase(begin, length);
-        break;
-      case 3:
-        text.insert(below(text.size()), text.substr(begin, length));
-        break;
-      case 4:
-        text.erase(line, line_end - line);
-        break;
-      case 5: {
-        const std::string moved = text.substr(line, line_end - line) + "\n";
-        const std::size_t to = text.rfind('\n', below(text.size())) + 1;
-        text.insert(std::min(to, text.size()), moved);
-        break;
-      }
-      default: {
-        const std::size_t word = text.find(' ', begin);
-        if (word != std::string::npos) {
-          const std::size_t end = std::min(text.find_first_of(" ,\n", word + 1), text.size());
-          text.replace(word + 1, end - word - 1, nasty[below(std::size(nasty))]);
-        }
-      }
-    }
-  }
-  return text;
-}
+constexpr const char* nasty[] = {"0",
+                                 "-1",
+                                 "1e400",
+                                 "1e200",
+                                 "nan",
+                                 "-inf",
+                                 "9223372036854775807",
+                                 "[",
+                                 "]",
+                                 "{",
+                                 "}",
+                                 "[[]]",
+                                 "{}",
+                                 "\"\"",
+                                 "\"all\"",
+                                 "true",
+                                 "\"x",
+                                 "'''",
+                                 "1.5",
+                                 "a.b.c",
+                                 "[[body]]",
+                                 "[run]",
+                                 "2020-01-01T00:00:00",
+                                 "\\u0000"};
 
 void expect_told(const ErrorList& errors) {
   for (const InputError& error : errors.errors()) {
@@ -110,7 +71,7 @@ TEST(damaged_decks, give_a_sound_deck_or_errors_with_their_places) {
   std::mt19937 random(20180624);
   int sound = 0, refused = 0;
   for (int i = 0; i < 20000; ++i) {
-    const std::string text = damaged(test::full_deck, random);
+    const std::string text = test::damaged(test::full_deck, random, nasty);
     ErrorList errors;
     const Deck deck = parse_deck(text, "fuzz", errors);
     expect_told(errors);
@@ -135,7 +96,7 @@ TEST(damaged_decks, whose_parser_finds_nothing_wrong_build_a_model_or_errors) {
   std::mt19937 random(7);
   int models = 0, refused = 0;
   for (int i = 0; models + refused < 1000; ++i) {
-    const std::string text = damaged(test::full_deck, random);
+    const std::string text = test::damaged(test::full_deck, random, nasty);
     ErrorList errors;
     const Deck deck = parse_deck(text, "fuzz", errors);
     double triangles = 0.0;

@@ -13,47 +13,15 @@
 
 #include "model/mesh_generators.hpp"
 #include "model/topology.hpp"
+#include "support/damage.hpp"
 #include "support/mesh_files.hpp"
 
 namespace fexp::io {
 namespace {
 
-/// Damages a file at random: bytes changed, pieces removed, repeated or cut off, numbers replaced by nasty ones.
-std::string damaged(std::string text, std::mt19937& random) {
-  constexpr const char* nasty[] = {
-      "0",  "-1", "2147483648", "9223372036854775807", "99999999999999999999", "1e400", "nan", "-inf", "$End",
-      "\"", "\n", "solid"};
-  const auto below = [&random](std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random()) % n; };
-  const std::size_t changes = 1 + below(4);
-  for (std::size_t i = 0; i < changes && !text.empty(); ++i) {
-    const std::size_t begin = below(text.size()), length = 1 + below(std::min<std::size_t>(60, text.size() - begin));
-    switch (below(6)) {
-      case 0:
-        text[begin] = static_cast<char>(random() & 0xffU);
-        break;
-      case 1:
-        text.resize(begin);
-        break;
-      case 2:
-        text.erase(begin, length);
-        break;
-      case 3:
-        text.insert(below(text.size()), text.substr(begin, length));
-        break;
-      case 4:
-        text[begin] = static_cast<char>('0' + below(10));
-        break;
-      default: {
-        const std::size_t word = text.find_first_of(" \n", begin);
-        if (word != std::string::npos) {
-          const std::size_t end = std::min(text.find_first_of(" \n", word + 1), text.size());
-          text.replace(word + 1, end - word - 1, nasty[below(std::size(nasty))]);
-        }
-      }
-    }
-  }
-  return text;
-}
+constexpr const char* nasty[] = {
+    "0",  "-1", "2147483648", "9223372036854775807", "99999999999999999999", "1e400", "nan", "-inf", "$End",
+    "\"", "\n", "solid"};
 
 /// Index checks that every mesh must pass, whatever its file was.
 void expect_sound(const model::Mesh& mesh) {
@@ -87,7 +55,7 @@ Outcome read_damaged(const std::vector<std::string>& files, const std::function<
   Outcome outcome;
   std::mt19937 random(20180624);
   for (int i = 0; i < 20000; ++i) {
-    const std::string text = damaged(files[static_cast<std::size_t>(i) % files.size()], random);
+    const std::string text = test::damaged(files[static_cast<std::size_t>(i) % files.size()], random, nasty);
     try {
       const model::Mesh mesh = read(text);
       expect_sound(mesh);

@@ -126,6 +126,24 @@ TEST(mesh_generators, every_mesh_passes_the_checks_has_its_topology_and_one_side
   }
 }
 
+// Every compiler has to number nodes alike: calls as arguments of one function may be evaluated in any order.
+TEST(mesh_generators, number_nodes_cell_by_cell_going_round_each) {
+  const auto first_triangles = [](const MeshGenerator& generator) {
+    const Mesh mesh = generate_mesh(generator);
+    return std::vector<Triangle>(mesh.triangle.begin(), mesh.triangle.begin() + 4);
+  };
+  EXPECT_EQ(first_triangles(CubedSphere{1.0, 4}), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}}));
+  EXPECT_EQ(first_triangles(UvSphere{1.0, 6, 4}), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}));
+  EXPECT_EQ(first_triangles(Plate{1.0, 1.0, 3, 3, "one"}),
+            (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}}));
+  EXPECT_EQ(first_triangles(Cylinder{1.0, 1.0, 6, 2, 360.0}),
+            (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}}));
+  EXPECT_EQ(first_triangles(SquareTube{1.0, 1.0, 2, 2}),
+            (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {1, 4, 2}, {4, 5, 2}}));
+  EXPECT_EQ(first_triangles(OpenBox{1.0, 1.0, 1.0, 2, 2, 2}),
+            (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {1, 4, 2}, {4, 5, 2}}));
+}
+
 TEST(mesh_generators, no_two_nodes_coincide) {
   for (const Expected& c : cases()) {
     const Mesh mesh = generate_mesh(c.generator);

@@ -3,7 +3,6 @@
 
 #include "app/schedule.hpp"
 #include "base/errors.hpp"
-#include "io/atomic_file.hpp"
 #include "io/output_error.hpp"
 #include "model/build.hpp"
 #include "model/build_checks.hpp"
@@ -14,15 +13,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string read_deck(const fs::path& path) {
+std::string read_deck(const fs::path& path, io::InputFiles& files) {
   ErrorList errors;
-  std::error_code error;
   std::string text;
-  if (fs::is_directory(path, error)) {
+  if (files.kind(path) == io::InputFiles::Kind::directory) {
     errors.add({path.string()}, "cannot read: it is a directory", "a readable deck (TOML)", "name the deck in it");
   } else {
     try {
-      text = io::read_whole(path);
+      text = files.read(path);
     } catch (const io::OutputError& failure) {
       errors.add({path.string()}, failure.message(), "a readable deck (TOML)", "check the path");
     }
@@ -33,14 +31,19 @@ std::string read_deck(const fs::path& path) {
 
 }  // namespace
 
-Case load_case(const fs::path& path) {
+Case load_case(const fs::path& deck) {
+  io::InputFiles files;
+  return load_case(deck, files);
+}
+
+Case load_case(const fs::path& deck, io::InputFiles& files) {
   Case loaded;
-  loaded.deck_bytes = read_deck(path);
+  loaded.deck_bytes = read_deck(deck, files);
   ErrorList errors;
-  loaded.deck = io::parse_deck(loaded.deck_bytes, path.string(), errors);
+  loaded.deck = io::parse_deck(loaded.deck_bytes, deck.string(), errors);
   errors.throw_if_any();
   check_intervals(loaded.deck, errors);
-  const std::vector<model::Mesh> meshes = io::load_meshes(loaded.deck, path.parent_path(), errors);
+  const std::vector<model::Mesh> meshes = io::load_meshes(loaded.deck, deck.parent_path(), files, errors);
   if (!errors.empty()) {
     // Without all meshes no model; what can be said without them is said.
     model::check_description(loaded.deck.description, errors);

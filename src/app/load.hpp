@@ -5,6 +5,7 @@
 #include <string>
 
 #include "io/deck.hpp"
+#include "io/input_files.hpp"
 #include "model/model.hpp"
 
 namespace fexp::app {
@@ -17,6 +18,9 @@ struct Case {
 };
 
 /// Reads a deck and its meshes and builds the model. Writes nothing. Throws InputErrors with everything that is wrong.
-[[nodiscard]] Case load_case(const std::filesystem::path& path);
+/// Afterwards `files` knows all that was read, the deck first.
+[[nodiscard]] Case load_case(const std::filesystem::path& deck, io::InputFiles& files);
+/// Likewise, from the disk.
+[[nodiscard]] Case load_case(const std::filesystem::path& deck);
 
 }  // namespace fexp::app

@@ -10,6 +10,7 @@
 #include "base/errors.hpp"
 #include "base/field.hpp"
 #include "io/history.hpp"
+#include "io/input_files.hpp"
 #include "model/description.hpp"
 #include "model/mesh.hpp"
 #include "model/model.hpp"
@@ -60,7 +61,7 @@ struct Deck {
 /// whose mesh cannot be had gets an empty one and an error. Models that cannot fit into the machine's memory are
 /// refused before memory is asked for.
 [[nodiscard]] std::vector<model::Mesh> load_meshes(const Deck& deck, const std::filesystem::path& directory,
-                                                   ErrorList& errors);
+                                                   InputFiles& files, ErrorList& errors);
 
 /// Reports node sets and bodies that [output] names and the model, built from the deck, does not have.
 void check_output(const OutputSettings& output, const model::Model& model, ErrorList& errors);

@@ -65,16 +65,16 @@ bool check_size(const std::vector<BodyDescription>& bodies, const std::vector<mo
 /// Reads mesh files, each but once.
 class FileMeshes {
  public:
-  FileMeshes(fs::path directory, ErrorList& errors) : directory_(std::move(directory)), errors_(errors) {}
+  FileMeshes(fs::path directory, InputFiles& files, ErrorList& errors)
+      : directory_(std::move(directory)), files_(files), errors_(errors) {}
 
   model::Mesh read(const BodyDescription& body, const model::MeshFile& file) {
     const fs::path path = (directory_ / file.path).lexically_normal();
     const auto [it, fresh] = meshes_.try_emplace({path.string(), file.weld_tolerance});
     if (fresh) {
       ErrorList found;
-      it->second = read_mesh(path, {file.weld_tolerance}, found);
-      std::error_code code;
-      const bool is_file = fs::is_regular_file(path, code);
+      it->second = read_mesh(path, {file.weld_tolerance}, files_, found);
+      const bool is_file = files_.kind(path) == InputFiles::Kind::file;
       for (InputError error : found.errors()) {
         if (is_file) {
           error.message += fmt::format(" (mesh of body \"{}\", {})", body.name, body.mesh_place.text());
@@ -90,19 +90,21 @@ class FileMeshes {
 
  private:
   fs::path directory_;
+  InputFiles& files_;
   ErrorList& errors_;
   std::map<std::pair<std::string, double>, model::Mesh> meshes_;
 };
 
 }  // namespace
 
-std::vector<model::Mesh> load_meshes(const Deck& deck, const fs::path& directory, ErrorList& errors) {
+std::vector<model::Mesh> load_meshes(const Deck& deck, const fs::path& directory, InputFiles& files,
+                                     ErrorList& errors) {
   const std::vector<BodyDescription>& bodies = deck.description.bodies;
   std::vector<model::Mesh> meshes(bodies.size());
-  FileMeshes files(directory, errors);
+  FileMeshes file_meshes(directory, files, errors);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (const auto* file = std::get_if<model::MeshFile>(&bodies[b].mesh)) {
-      meshes[b] = files.read(bodies[b], *file);
+      meshes[b] = file_meshes.read(bodies[b], *file);
     }
   }
   if (check_size(bodies, meshes, errors)) {

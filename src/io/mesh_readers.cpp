@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <system_error>
 #include <vector>
 
+#include "io/output_error.hpp"
 #include "io/similar_names.hpp"
 #include "io/text_scanner.hpp"
 
@@ -19,7 +19,10 @@ namespace fs = std::filesystem;
 constexpr std::string_view accepted_formats = ".msh (Gmsh 2.2 or 4.1 ASCII), .stl, .obj";
 
 /// What to try when the file is not there: names of the same directory that look alike.
-std::string missing_file_cure(const fs::path& path) {
+std::string missing_file_cure(const fs::path& path, const InputFiles& files) {
+  if (files.from_memory()) {
+    return "run the deck again from the start: its packed files lack this one";
+  }
   const fs::path directory = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::error_code code;
   if (!fs::is_directory(directory, code)) {
@@ -37,28 +40,24 @@ std::string missing_file_cure(const fs::path& path) {
 }
 
 /// The file's bytes, or an error and nothing.
-bool read_bytes(const fs::path& path, std::string& bytes, ErrorList& errors) {
+bool read_bytes(const fs::path& path, InputFiles& files, std::string& bytes, ErrorList& errors) {
   const Place place{path.string(), 0, 0};
-  std::error_code code;
-  if (!fs::exists(path, code)) {
+  const InputFiles::Kind kind = files.kind(path);
+  if (kind == InputFiles::Kind::missing) {
     errors.add(place, fmt::format("mesh file \"{}\" is not there", path.string()), std::string(accepted_formats),
-               missing_file_cure(path));
+               missing_file_cure(path, files));
     return false;
   }
-  if (!fs::is_regular_file(path, code)) {
+  if (kind != InputFiles::Kind::file) {
     errors.add(place, fmt::format("\"{}\" is no file", path.string()), std::string(accepted_formats),
                "name a mesh file");
     return false;
   }
-  std::ifstream file(path, std::ios::binary);
-  const std::uintmax_t size = fs::file_size(path, code);
-  if (file && !code) {
-    bytes.resize(static_cast<std::size_t>(size));
-    file.read(bytes.data(), static_cast<std::streamsize>(size));
-  }
-  if (!file || code || static_cast<std::uintmax_t>(file.gcount()) != size) {
-    errors.add(place, fmt::format("mesh file \"{}\" cannot be read", path.string()), "a file you may read",
-               "check its permissions");
+  try {
+    bytes = files.read(path);
+  } catch (const OutputError& failure) {
+    errors.add(place, fmt::format("mesh file \"{}\": {}", path.string(), failure.message()), "a file you may read",
+               failure.cure());
     return false;
   }
   if (bytes.empty()) {
@@ -71,9 +70,9 @@ bool read_bytes(const fs::path& path, std::string& bytes, ErrorList& errors) {
 
 }  // namespace
 
-model::Mesh read_mesh(const fs::path& path, const MeshReadOptions& options, ErrorList& errors) {
+model::Mesh read_mesh(const fs::path& path, const MeshReadOptions& options, InputFiles& files, ErrorList& errors) {
   std::string bytes;
-  if (!read_bytes(path, bytes, errors)) {
+  if (!read_bytes(path, files, bytes, errors)) {
     return {};
   }
   const std::string extension = path.extension().string();

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/errors.hpp"
+#include "io/input_files.hpp"
 #include "model/mesh.hpp"
 
 /// Triangle meshes from files: Gmsh .msh 2.2 and 4.1 ASCII, STL ASCII and binary, Wavefront OBJ.
@@ -20,7 +21,7 @@ struct MeshReadOptions {
 /// that no triangle uses are left out. When the file is unfit, adds the errors and returns a mesh without triangles.
 /// The mesh's connectivity is not judged here; model::check_mesh does that.
 [[nodiscard]] model::Mesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options,
-                                    ErrorList& errors);
+                                    InputFiles& files, ErrorList& errors);
 
 /// The single formats, from text in memory. `file` is the name used in errors; they throw InputErrors.
 [[nodiscard]] model::Mesh read_gmsh(std::string_view text, const std::string& file);

@@ -108,7 +108,8 @@ TEST(damaged_decks, whose_parser_finds_nothing_wrong_build_a_model_or_errors) {
     if (!errors.empty() || triangles > 1.0e5) {
       continue;
     }
-    const std::vector<model::Mesh> meshes = load_meshes(deck, "", errors);
+    InputFiles files;
+    const std::vector<model::Mesh> meshes = load_meshes(deck, "", files, errors);
     if (errors.empty()) {
       const model::Model model = model::build_model(deck.description, meshes, errors);
       if (errors.empty()) {

@@ -159,7 +159,8 @@ group = "rim of a"
 TEST(deck, a_model_is_built_of_it) {
   const Deck deck = parse_well(test::full_deck);
   ErrorList errors;
-  const std::vector<model::Mesh> meshes = load_meshes(deck, "", errors);
+  InputFiles files;
+  const std::vector<model::Mesh> meshes = load_meshes(deck, "", files, errors);
   const model::Model model = model::build_model(deck.description, meshes, errors);
   check_output(deck.output, model, errors);
   for (const InputError& error : errors.errors()) {

@@ -255,7 +255,8 @@ TEST(deck_errors, output_of_sets_and_bodies_that_are_not_there_is_told_at_its_se
       "array = {count = [2, 1, 1], pitch = [3, 0, 0]}\n[output]\n"
       "nodes = [\"all\", \"rim\"]\nbodies = [\"ball\", \"ball[1,0,0]\", \"ball[2,0,0]\"]\n",
       "d", errors);
-  const std::vector<model::Mesh> meshes = load_meshes(deck, "", errors);
+  InputFiles files;
+  const std::vector<model::Mesh> meshes = load_meshes(deck, "", files, errors);
   const model::Model model = model::build_model(deck.description, meshes, errors);
   ASSERT_TRUE(errors.empty()) << errors.errors()[0].text();
   check_output(deck.output, model, errors);

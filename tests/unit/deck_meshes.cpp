@@ -29,7 +29,8 @@ Deck deck_with(const std::vector<std::string>& meshes) {
 
 std::vector<InputError> errors_of(const std::vector<std::string>& meshes, const std::filesystem::path& directory) {
   ErrorList errors;
-  const std::vector<model::Mesh> loaded = load_meshes(deck_with(meshes), directory, errors);
+  InputFiles files;
+  const std::vector<model::Mesh> loaded = load_meshes(deck_with(meshes), directory, files, errors);
   EXPECT_EQ(loaded.size(), meshes.size());
   return errors.errors();
 }
@@ -42,8 +43,9 @@ TEST(deck_meshes, are_generated_and_read_relative_to_the_deck_in_the_order_of_bo
   std::filesystem::create_directory(directory / "sub");
   directory.write("sub/plate.msh", test::gmsh_2(plate));
   ErrorList errors;
+  InputFiles files;
   const std::string file = "mesh = {kind = \"file\", path = \"sub/plate.msh\"}";
-  const auto meshes = load_meshes(deck_with({file, small_sphere, file}), directory.path(), errors);
+  const auto meshes = load_meshes(deck_with({file, small_sphere, file}), directory.path(), files, errors);
   ASSERT_TRUE(errors.empty()) << errors.errors()[0].text();
   ASSERT_EQ(meshes.size(), 3U);
   EXPECT_EQ(meshes[0].triangle, plate.triangle);
@@ -56,9 +58,10 @@ TEST(deck_meshes, the_weld_tolerance_reaches_the_reader) {
   const model::Mesh plate = model::generate_mesh(model::Plate{1.0, 1.0, 10, 1, "one"});
   directory.write("plate.stl", test::stl_ascii(plate));
   ErrorList errors;
+  InputFiles files;
   const auto meshes = load_meshes(deck_with({"mesh = {kind = \"file\", path = \"plate.stl\"}",
                                              "mesh = {kind = \"file\", path = \"plate.stl\", weld_tolerance = 0.15}"}),
-                                  directory.path(), errors);
+                                  directory.path(), files, errors);
   EXPECT_EQ(meshes[0].position.size(), plate.position.size());
   EXPECT_LT(meshes[1].position.size(), plate.position.size()) << "neighbours 0.1 apart were not joined";
 }

@@ -25,7 +25,8 @@ TEST(deck_reference, its_example_builds_a_model) {
   const std::string text = page.substr(begin + opening.size(), page.find("```", begin + 1) - begin - opening.size());
   ErrorList errors;
   const Deck deck = parse_deck(text, "docs/deck.md", errors);
-  const std::vector<model::Mesh> meshes = load_meshes(deck, ".", errors);
+  InputFiles files;
+  const std::vector<model::Mesh> meshes = load_meshes(deck, ".", files, errors);
   const model::Model model = model::build_model(deck.description, meshes, errors);
   check_output(deck.output, model, errors);
   for (const InputError& error : errors.errors()) {

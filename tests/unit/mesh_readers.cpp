@@ -18,7 +18,8 @@ namespace {
 
 model::Mesh read_well(const std::filesystem::path& path, double weld_tolerance = -1.0) {
   ErrorList errors;
-  model::Mesh mesh = read_mesh(path, {weld_tolerance}, errors);
+  InputFiles files;
+  model::Mesh mesh = read_mesh(path, {weld_tolerance}, files, errors);
   for (const InputError& error : errors.errors()) {
     ADD_FAILURE() << error.text();
   }
@@ -35,7 +36,8 @@ model::Mesh read_text(const std::string& name, std::string_view content, double 
 InputError error_of(const std::string& name, std::string_view content) {
   const test::TemporaryDirectory directory;
   ErrorList errors;
-  const model::Mesh mesh = read_mesh(directory.write(name, content), {}, errors);
+  InputFiles files;
+  const model::Mesh mesh = read_mesh(directory.write(name, content), {}, files, errors);
   EXPECT_TRUE(mesh.triangle.empty());
   if (errors.size() != 1) {
     ADD_FAILURE() << errors.size() << " errors from " << name;
@@ -344,11 +346,12 @@ TEST(mesh_readers, missing_empty_and_unknown_files_are_named_with_what_to_do) {
   const test::TemporaryDirectory directory;
   directory.write("bumper.msh", "x");
   ErrorList errors;
-  static_cast<void>(read_mesh(directory.path() / "bumpre.msh", {}, errors));
-  static_cast<void>(read_mesh(directory.path() / "nowhere" / "bumper.msh", {}, errors));
-  static_cast<void>(read_mesh(directory.path(), {}, errors));
-  static_cast<void>(read_mesh(directory.write("empty.stl", ""), {}, errors));
-  static_cast<void>(read_mesh(directory.write("part.step", "ISO-10303-21;"), {}, errors));
+  InputFiles files;
+  static_cast<void>(read_mesh(directory.path() / "bumpre.msh", {}, files, errors));
+  static_cast<void>(read_mesh(directory.path() / "nowhere" / "bumper.msh", {}, files, errors));
+  static_cast<void>(read_mesh(directory.path(), {}, files, errors));
+  static_cast<void>(read_mesh(directory.write("empty.stl", ""), {}, files, errors));
+  static_cast<void>(read_mesh(directory.write("part.step", "ISO-10303-21;"), {}, files, errors));
   ASSERT_EQ(errors.size(), 5U);
   EXPECT_TRUE(says(errors.errors()[0], "did you mean \"bumper.msh\"?"));
   EXPECT_TRUE(says(errors.errors()[0], "bumpre.msh"));

@@ -19,7 +19,8 @@ ALLOWED = {
     "solve": ["base", "parallel", "physics", "model", "contact"],
     "cluster": ["base", "parallel", "physics", "model", "contact", "solve"],
     "io": ["base", "parallel", "physics", "model"],
-    "app": ["base", "parallel", "physics", "model", "contact", "solve", "cluster", "io"],
+    "coordinator": ["base", "io"],
+    "app": ["base", "parallel", "physics", "model", "contact", "solve", "cluster", "io", "coordinator"],
 }
 
 # Libraries that one layer hides from the others.
@@ -29,7 +30,7 @@ PRIVATE_LIBRARIES = {
     "toml++/": {"io"},
     "hdf5": {"io"},
     "H5": {"io"},
-    "nlohmann/": {"io", "app"},
+    "nlohmann/": {"io", "coordinator", "app"},
     "CLI/": {"app"},
     "xxhash": {"base"},
     "iostream": {"io", "app"},

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "io/atomic_file.hpp"
+#include "io/checkpoint_files.hpp"
 #include "io/output_error.hpp"
 #include "io/vtkhdf_hdf5.hpp"
 #include "parallel/library_version.hpp"
@@ -49,9 +50,11 @@ fs::path first_free(const fs::path& deck) {
 void clear_earlier_run(const RunDirectory& run) {
   std::error_code error;
   const bool is_run = fs::exists(run.versions(), error);
-  for (const fs::path& path : {run.deck(), run.results(), run.xdmf(), run.log(), run.summary(), run.versions()}) {
+  for (const fs::path& path :
+       {run.deck(), run.results(), run.xdmf(), run.log(), run.summary(), run.versions(), run.inputs()}) {
     fs::remove(path, error);
   }
+  CheckpointFiles(run.checkpoints()).clear();
   if (!is_run) {
     return;
   }

@@ -40,6 +40,10 @@ class RunDirectory {
   [[nodiscard]] std::filesystem::path summary() const { return path_ / "summary.json"; }
   [[nodiscard]] std::filesystem::path versions() const { return path_ / "versions.txt"; }
   [[nodiscard]] std::filesystem::path hashes() const { return path_ / "hashes.csv"; }
+  /// The deck and its meshes, packed.
+  [[nodiscard]] std::filesystem::path inputs() const { return path_ / "inputs.fexp"; }
+  /// The directory of CheckpointFiles.
+  [[nodiscard]] std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
   /// "energies" -> <directory>/energies.csv
   [[nodiscard]] std::filesystem::path history(std::string_view name) const {
     return path_ / (std::string(name) + ".csv");

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
-#include <ranges>
 #include <string_view>
 #include <system_error>
 
@@ -99,10 +98,11 @@ void CheckpointFiles::write(std::int64_t step, std::span<const Section> sections
 }
 
 FoundCheckpoint CheckpointFiles::newest() const {
-  const std::vector<std::int64_t> present = steps();
+  std::vector<std::int64_t> latest_first = steps();
+  std::ranges::reverse(latest_first);
   FoundCheckpoint found;
   std::string wrong;
-  for (const std::int64_t step : std::views::reverse(present)) {
+  for (const std::int64_t step : latest_first) {
     found.step = step;
     found.path = path(step);
     try {

@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "base/bytes.hpp"
+#include "base/byte_stream.hpp"
 #include "base/hash.hpp"
 #include "io/atomic_file.hpp"
 #include "io/output_error.hpp"
@@ -33,8 +33,8 @@ Section section_of(const std::string& name, std::string_view text) {
 }
 
 void check_head(std::span<const Section> sections, const fs::path& origin) {
-  std::uint32_t format = 0;
-  if (!ByteReader(section_named(sections, head_name, origin).bytes).number(format) || format > packed_format) {
+  const auto format = ByteReader(section_named(sections, head_name, origin).bytes).value<std::uint32_t>();
+  if (format == 0 || format > packed_format) {
     throw OutputError(origin,
                       fmt::format("packed input files of format {}, and this program knows {}", format, packed_format),
                       "use the version of fexp that wrote them, or a later one");
@@ -114,7 +114,7 @@ fs::path InputFiles::deck() const { return files_.empty() ? fs::path() : fs::pat
 
 std::vector<std::byte> InputFiles::pack() const {
   ByteWriter head;
-  head.number(packed_format);
+  head.value(packed_format);
   std::vector<Section> sections{{head_name, head.take()}};
   for (const File& file : files_) {
     sections.push_back(section_of(file.name, read_again(file)));

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/bytes.hpp"
+#include "base/byte_stream.hpp"
 #include "base/hash.hpp"
 #include "io/atomic_file.hpp"
 #include "io/output_error.hpp"
@@ -27,20 +27,22 @@ struct Entry {
   std::uint64_t hash{};
 };
 
-std::vector<std::byte> header_of(std::span<const Section> sections) {
+void append(std::span<const std::byte> more, Bytes& bytes) { bytes.insert(bytes.end(), more.begin(), more.end()); }
+
+Bytes header_of(std::span<const Section> sections) {
   ByteWriter table;
   for (const Section& section : sections) {
     table.text(section.name);
-    table.number(static_cast<std::uint64_t>(section.bytes.size()));
-    table.number(hash_bytes(section.bytes));
+    table.value(static_cast<std::uint64_t>(section.bytes.size()));
+    table.value(hash_bytes(section.bytes));
   }
   ByteWriter header;
-  header.bytes(std::as_bytes(std::span(magic)));
-  header.number(section_format);
-  header.number(static_cast<std::uint32_t>(sections.size()));
-  header.number(static_cast<std::uint64_t>(fixed_bytes + table.written().size() + header_hash_bytes));
-  header.bytes(table.written());
-  header.number(hash_bytes(header.written()));
+  append(std::as_bytes(std::span(magic)), header.bytes());
+  header.value(section_format);
+  header.value(static_cast<std::uint32_t>(sections.size()));
+  header.value(static_cast<std::uint64_t>(fixed_bytes + table.bytes().size() + header_hash_bytes));
+  append(table.bytes(), header.bytes());
+  header.value(hash_bytes(header.bytes()));
   return header.take();
 }
 
@@ -84,13 +86,14 @@ class Unpacker {
       fail("not a file of this kind, it does not begin with \"FEXPSECT\"", "name a file that fexp wrote");
     }
     ByteReader reader(bytes_.subspan(known));
-    std::uint32_t version = 0, count = 0;
-    std::uint64_t length = 0;
-    if (reader.number(version) && version > section_format) {
+    const auto version = reader.value<std::uint32_t>();
+    if (version > section_format) {
       fail(fmt::format("of format version {}, and this program knows versions up to {}", version, section_format),
            "use the version of fexp that wrote the file, or a later one");
     }
-    if (!reader.number(count) || !reader.number(length)) {
+    const auto count = reader.value<std::uint32_t>();
+    const auto length = reader.value<std::uint64_t>();
+    if (!reader.sound()) {
       fail_truncated(fmt::format("at least {}", fixed_bytes + header_hash_bytes));
     }
     if (version == 0 || length < fixed_bytes + header_hash_bytes) {
@@ -105,15 +108,17 @@ class Unpacker {
 
   std::vector<Entry> read_table(std::uint32_t count) const {
     const std::size_t hashed = header_bytes_ - header_hash_bytes;
-    std::uint64_t hash = 0;
-    if (!ByteReader(bytes_.subspan(hashed)).number(hash) || hash != hash_bytes(bytes_.first(hashed))) {
+    if (ByteReader(bytes_.subspan(hashed)).value<std::uint64_t>() != hash_bytes(bytes_.first(hashed))) {
       fail_altered();
     }
     ByteReader reader(bytes_.first(hashed).subspan(fixed_bytes));
     std::vector<Entry> entries;
     for (std::uint32_t i = 0; i < count; ++i) {
       Entry entry;
-      if (!reader.text(entry.name) || !reader.number(entry.length) || !reader.number(entry.hash)) {
+      entry.name = reader.text();
+      entry.length = reader.value<std::uint64_t>();
+      entry.hash = reader.value<std::uint64_t>();
+      if (!reader.sound()) {
         fail_altered();
       }
       entries.push_back(std::move(entry));
@@ -150,7 +155,7 @@ class Unpacker {
 std::vector<std::byte> pack_sections(std::span<const Section> sections) {
   std::vector<std::byte> bytes = header_of(sections);
   for (const Section& section : sections) {
-    bytes.insert(bytes.end(), section.bytes.begin(), section.bytes.end());
+    append(section.bytes, bytes);
   }
   return bytes;
 }

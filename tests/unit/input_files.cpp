@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "app/load.hpp"
-#include "base/bytes.hpp"
+#include "base/byte_stream.hpp"
 #include "io/output_error.hpp"
 #include "io/section_file.hpp"
 #include "model/mesh_generators.hpp"
@@ -174,7 +174,7 @@ TEST(input_files, kinds_on_the_disk_are_told_apart) {
 TEST(input_files, sections_of_another_kind_or_a_newer_format_are_refused) {
   EXPECT_THROW(static_cast<void>(InputFiles::unpack(pack_sections(test::some_sections()), "packed")), OutputError);
   ByteWriter head;
-  head.number(std::uint32_t{2});
+  head.value(std::uint32_t{2});
   const std::vector<Section> newer{{"inputs", head.take()}};
   EXPECT_THROW(static_cast<void>(InputFiles::unpack(pack_sections(newer), "packed")), OutputError);
 }

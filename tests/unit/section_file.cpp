@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/bytes.hpp"
+#include "base/byte_stream.hpp"
 #include "base/hash.hpp"
 #include "io/atomic_file.hpp"
 #include "io/output_error.hpp"
@@ -43,29 +43,26 @@ std::string message_of(const std::function<void()>& work) {
   return "";
 }
 
-TEST(bytes, numbers_and_texts_come_back_in_order_and_no_more_than_there_are) {
+TEST(byte_stream, values_and_texts_come_back_in_order_and_no_more_than_there_are) {
   ByteWriter writer;
-  writer.number(std::int64_t{-7});
+  writer.value(std::int64_t{-7});
   writer.text(std::string_view("a\0b", 3));
-  writer.number(0.1);
-  const std::vector<std::byte> bytes = writer.take();
+  writer.value(0.1);
+  const Bytes bytes = writer.take();
   ASSERT_EQ(bytes.size(), 8U + 8U + 3U + 8U);
   EXPECT_EQ(bytes[0], std::byte{0xf9}) << "the lowest byte comes first";
-  std::int64_t integer = 0;
-  std::string text;
-  double real = 0.0;
   ByteReader reader(bytes);
-  EXPECT_TRUE(reader.number(integer) && reader.text(text) && !reader.at_end() && reader.number(real));
-  EXPECT_TRUE(reader.at_end());
-  EXPECT_EQ(integer, -7);
-  EXPECT_EQ(text, std::string("a\0b", 3));
-  EXPECT_EQ(real, 0.1);
-  EXPECT_FALSE(reader.number(integer));
-  EXPECT_EQ(integer, -7);
+  EXPECT_EQ(reader.value<std::int64_t>(), -7);
+  EXPECT_EQ(reader.text(), std::string("a\0b", 3));
+  EXPECT_FALSE(reader.at_end());
+  EXPECT_EQ(reader.value<double>(), 0.1);
+  EXPECT_TRUE(reader.at_end() && reader.sound());
+  EXPECT_EQ(reader.value<std::int64_t>(), 0);
+  EXPECT_FALSE(reader.sound());
   ByteReader cut{std::span(bytes).first(16)};
-  EXPECT_TRUE(cut.number(integer));
-  EXPECT_FALSE(cut.text(text)) << "a length beyond the end";
-  EXPECT_EQ(text, std::string("a\0b", 3));
+  EXPECT_EQ(cut.value<std::int64_t>(), -7);
+  EXPECT_EQ(cut.text(), "") << "a length beyond the end";
+  EXPECT_FALSE(cut.sound());
 }
 
 TEST(section_file, sections_come_back_in_their_order_with_any_bytes) {
@@ -77,15 +74,17 @@ TEST(section_file, sections_come_back_in_their_order_with_any_bytes) {
 TEST(section_file, begins_with_magic_version_count_and_header_length) {
   const std::vector<std::byte> bytes = pack_sections(std::vector<Section>{{"ab", bytes_of("xyz")}});
   ByteWriter expected;
-  expected.bytes(bytes_of("FEXPSECT"));
-  expected.number(std::uint32_t{1});
-  expected.number(std::uint32_t{1});
-  expected.number(std::uint64_t{24 + 8 + 2 + 8 + 8 + 8});
+  expected.bytes() = bytes_of("FEXPSECT");
+  expected.value(std::uint32_t{1});
+  expected.value(std::uint32_t{1});
+  expected.value(std::uint64_t{24 + 8 + 2 + 8 + 8 + 8});
   expected.text("ab");
-  expected.number(std::uint64_t{3});
-  expected.number(hash_bytes(bytes_of("xyz")));
-  expected.number(hash_bytes(expected.written()));
-  expected.bytes(bytes_of("xyz"));
+  expected.value(std::uint64_t{3});
+  expected.value(hash_bytes(bytes_of("xyz")));
+  expected.value(hash_bytes(expected.bytes()));
+  for (const std::byte byte : bytes_of("xyz")) {
+    expected.value(byte);
+  }
   EXPECT_EQ(bytes, expected.take());
 }
 
@@ -134,17 +133,17 @@ TEST(section_file, no_file_cut_short_is_taken) {
 
 TEST(section_file, a_header_that_announces_more_than_memory_holds_is_refused) {
   ByteWriter writer;
-  writer.bytes(bytes_of("FEXPSECT"));
-  writer.number(section_format);
-  writer.number(std::uint32_t{2});
-  writer.number(std::uint64_t{24 + 2 * 24 + 8});
+  writer.bytes() = bytes_of("FEXPSECT");
+  writer.value(section_format);
+  writer.value(std::uint32_t{2});
+  writer.value(std::uint64_t{24 + 2 * 24 + 8});
   for (int i = 0; i < 2; ++i) {
     writer.text("");
-    writer.number(~std::uint64_t{0} - 5);
-    writer.number(std::uint64_t{0});
+    writer.value(~std::uint64_t{0} - 5);
+    writer.value(std::uint64_t{0});
   }
-  writer.number(hash_bytes(writer.written()));
-  EXPECT_EQ(message_of(writer.written()), "its header has been altered (checksum)");
+  writer.value(hash_bytes(writer.bytes()));
+  EXPECT_EQ(message_of(writer.bytes()), "its header has been altered (checksum)");
 }
 
 TEST(section_file, a_file_on_disk_holds_the_packed_bytes_and_replaces_the_one_before) {

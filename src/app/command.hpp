@@ -15,6 +15,7 @@ struct Command {
   const char* examples;  ///< Lines for --help
   /// Declares the options; returns what carries the command out once they are parsed.
   std::function<ExitCode()> (*declare)(CLI::App& options);
+  bool hidden{};  ///< Started by fexp itself, not by users
 };
 
 // To add a command: its own file that defines it, its line here, and its line in the table in command_line.cpp.
@@ -23,5 +24,7 @@ extern const Command check_command;
 extern const Command info_command;
 extern const Command compare_command;
 extern const Command reference_command;
+extern const Command cluster_command;
+extern const Command probe_command;
 
 }  // namespace fexp::app

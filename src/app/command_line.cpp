@@ -21,7 +21,8 @@ namespace fexp::app {
 
 namespace {
 
-constexpr std::array commands{&run_command, &check_command, &info_command, &compare_command, &reference_command};
+constexpr std::array commands{&run_command,       &check_command,   &info_command, &compare_command,
+                              &reference_command, &cluster_command, &probe_command};
 
 void complain(const std::string& text) { print_error(fmt::format("fexp: {}\n", text)); }
 
@@ -36,7 +37,7 @@ std::string exit_code_text() {
 std::string overview_footer() {
   std::string text = "\nExamples:\n";
   for (const Command* command : commands) {
-    text += fmt::format("{}\n", command->examples);
+    text += command->hidden ? "" : fmt::format("{}\n", command->examples);
   }
   return text + "\n\"fexp COMMAND --help\" tells a command's options.\n\n" + exit_code_text();
 }
@@ -47,10 +48,13 @@ std::string suggestion(const std::string& wanted, const std::vector<std::string>
   return similar.empty() ? "" : fmt::format("; did you mean {}?", fmt::join(similar, " or "));
 }
 
-std::vector<std::string> command_names() {
+/// All, or those that users call.
+std::vector<std::string> command_names(bool hidden_too) {
   std::vector<std::string> names;
   for (const Command* command : commands) {
-    names.emplace_back(command->name);
+    if (hidden_too || !command->hidden) {
+      names.emplace_back(command->name);
+    }
   }
   return names;
 }
@@ -90,22 +94,35 @@ struct Parser {
     for (const Command* command : commands) {
       CLI::App* options = app.add_subcommand(command->name, command->purpose);
       options->footer(fmt::format("\nExamples:\n{}\n\n{}", command->examples, exit_code_text()));
+      if (command->hidden) {
+        options->group("");
+      }
       actions.emplace_back(options, command->declare(*options));
     }
   }
 
+  /// The innermost command on the command line.
   [[nodiscard]] const CLI::App& chosen() const {
-    const auto given = app.get_subcommands();
-    return given.empty() ? app : *given.front();
+    const CLI::App* command = &app;
+    for (auto given = command->get_subcommands(); !given.empty(); given = command->get_subcommands()) {
+      command = given.front();
+    }
+    return *command;
   }
 };
 
+/// "fexp cluster add"
+std::string full_name(const CLI::App& command) {
+  return command.get_parent() == nullptr ? command.get_name()
+                                         : full_name(*command.get_parent()) + " " + command.get_name();
+}
+
 ExitCode parse_and_run(int argc, const char* const* argv) {
   const std::string first = argc > 1 ? argv[1] : "";
-  const std::vector<std::string> names = command_names();
+  const std::vector<std::string> names = command_names(true);
   if (!first.empty() && !first.starts_with("-") && std::ranges::find(names, first) == names.end()) {
     complain(fmt::format("unknown command \"{}\"{}\nCommands: {}. \"fexp --help\" tells more.", first,
-                         suggestion(first, names), fmt::join(names, ", ")));
+                         suggestion(first, command_names(false)), fmt::join(command_names(false), ", ")));
     return ExitCode::wrong_input;
   }
   Parser parser;
@@ -116,8 +133,7 @@ ExitCode parse_and_run(int argc, const char* const* argv) {
     return ExitCode::done;
   } catch (const CLI::ParseError& error) {
     const CLI::App& options = parser.chosen();
-    const std::string command = options.get_name() == "fexp" ? "fexp" : "fexp " + options.get_name();
-    complain(fmt::format("{}\n\"{} --help\" tells what is known.", usage_error(options, error), command));
+    complain(fmt::format("{}\n\"{} --help\" tells what is known.", usage_error(options, error), full_name(options)));
     return ExitCode::wrong_input;
   }
   const auto is_chosen = [](const auto& action) { return action.first->parsed(); };

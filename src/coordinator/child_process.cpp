@@ -3,8 +3,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/pidfd.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -125,7 +125,8 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words,
   }
   // Here too, so that the group is there before the first signal to it.
   static_cast<void>(setpgid(id_, id_));
-  end_descriptor_ = pidfd_open(id_, 0);
+  // The library of Debian 12 declares pidfd_open for C only.
+  end_descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, id_, 0));  // NOLINT(cppcoreguidelines-pro-type-vararg)
 }
 
 ChildProcess::~ChildProcess() {

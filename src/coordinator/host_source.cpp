@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <thread>
 #include <utility>
 
 #include "io/atomic_file.hpp"
@@ -26,6 +28,25 @@ std::string last_line(const std::string& text) {
 }
 
 }  // namespace
+
+std::string run_host_script(const std::string& script) {
+  using namespace std::chrono_literals;
+  ChildProcess process({script});
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(script_limit);
+  while (!process.exited() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(10ms);
+    process.look();
+  }
+  if (!process.succeeded()) {
+    const std::string said = last_line(process.errors());
+    throw io::OutputError(script,
+                          process.exited()
+                              ? fmt::format("failed ({}){}{}", process.status_text(), said.empty() ? "" : ": ", said)
+                              : fmt::format("has not answered within {:.0f} s", script_limit),
+                          "run it by hand to see why");
+  }
+  return process.output();
+}
 
 HostSource::HostSource(std::filesystem::path file, std::string script)
     : file_(std::move(file)), script_(std::move(script)) {}

@@ -12,6 +12,9 @@
 
 namespace fexp::coordinator {
 
+/// What the script prints, waited for at most 30 s. Throws OutputError when it fails.
+[[nodiscard]] std::string run_host_script(const std::string& script);
+
 /// Where the list of machines comes from while the run goes on: a file that is watched, a script that is run again and
 /// again, or nowhere.
 class HostSource {

@@ -21,7 +21,7 @@ std::optional<int> slots_of(std::string_view text) {
   return whole && slots >= 1 && slots <= most_slots ? std::optional(slots) : std::nullopt;
 }
 
-/// Names become names of files and parts of command lines.
+/// Names become names of files and parts of command lines. Those that begin with "_" are ours.
 bool is_name(std::string_view text) {
   const auto allowed = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' ||
@@ -29,7 +29,7 @@ bool is_name(std::string_view text) {
   };
   constexpr std::size_t longest = 200;
   return !text.empty() && text.size() <= longest && std::ranges::all_of(text, allowed) && text.front() != '.' &&
-         text.front() != '-';
+         text.front() != '_' && text.front() != '-';
 }
 
 /// A name, or a number of version 6 with its colons.

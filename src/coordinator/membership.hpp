@@ -174,6 +174,8 @@ class Membership {
   [[nodiscard]] std::string phase() const;
   [[nodiscard]] std::optional<int> world() const;
   [[nodiscard]] std::int64_t step() const noexcept { return step_; }
+  /// Why the last world that was lost was.
+  [[nodiscard]] const std::string& last_loss() const noexcept { return last_loss_; }
 
  private:
   struct Host {

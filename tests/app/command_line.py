@@ -170,11 +170,11 @@ class Help(program.Case):
     def test_every_command_has_examples_and_the_exit_codes(self):
         overview = self.fexp("--help")
         self.assertEqual((overview.returncode, overview.stderr), (0, ""))
-        for command in ("run", "check", "info", "compare", "reference"):
+        for command in ("run", "check", "info", "compare", "reference", "cluster"):
             text = self.fexp(command, "--help").stdout
             self.assertIn(f"  fexp {command} ", text)
             self.assertIn(f"  fexp {command} ", overview.stdout)
-            for code in ("0 ", "1 ", "2 ", "3 ", "4 ", "5 ", "129", "130", "143"):
+            for code in ("0 ", "1 ", "2 ", "3 ", "4 ", "5 ", "6 ", "129", "130", "143"):
                 self.assertIn(f"\n  {code}", text)
 
     def test_version(self):

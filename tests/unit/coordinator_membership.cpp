@@ -1,0 +1,710 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coordinator/membership.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fexp::coordinator {
+
+namespace {
+
+/// A membership with a clock, and what it wanted done.
+struct Scene {
+  explicit Scene(std::vector<StepEvent> events = {}, Timing timing = {})
+      : membership(
+            {"1.0", [](std::string_view address) { return address == "localhost"; }, std::move(events), 1, timing}) {}
+
+  /// Takes actions; checks of machines are answered with `answer`, or as their machine's entry in `answers`.
+  void settle() {
+    for (auto actions = membership.take_actions(); !actions.empty(); actions = membership.take_actions()) {
+      for (const Action& action : actions) {
+        note(action);
+      }
+    }
+  }
+
+  void note(const Action& action) {
+    if (const auto* check = std::get_if<CheckMachine>(&action)) {
+      checks.push_back(*check);
+      if (answer_checks) {
+        const bool down = std::ranges::find(dead, check->machine.name) != dead.end();
+        membership.checked(now, check->machine, down ? CheckAnswer{false, "no route", "", false} : good);
+      }
+    } else if (const auto* launch = std::get_if<LaunchWorld>(&action)) {
+      launches.push_back(*launch);
+    } else if (const auto* look = std::get_if<LookAt>(&action)) {
+      looks.push_back(*look);
+    } else if (const auto* kill = std::get_if<KillWorld>(&action)) {
+      kills.push_back(*kill);
+    } else if (const auto* finish = std::get_if<FinishRun>(&action)) {
+      finished = *finish;
+    } else if (const auto* words = std::get_if<Tell>(&action)) {
+      told += words->text + "\n";
+    } else if (std::holds_alternative<AskReform>(action)) {
+      ++reforms;
+    } else {
+      ++stops;
+    }
+  }
+
+  void want(const std::string& name, const std::string& address) {
+    membership.want(now, {name, address, 0});
+    settle();
+  }
+  /// Lets time pass, ten ticks a second.
+  void pass(double seconds) {
+    const double begin = now;
+    for (long tick = 1; tick <= std::lround(10.0 * seconds); ++tick) {
+      now = begin + 0.1 * static_cast<double>(tick);
+      membership.tick(now);
+      settle();
+    }
+  }
+  void start(std::int64_t step = 0) {
+    membership.connected(now);
+    membership.started(now, step);
+    settle();
+  }
+  void advance(std::int64_t step) {
+    membership.advanced(now, step);
+    settle();
+  }
+  void end(const std::string& reason, std::optional<std::int64_t> step = {}) {
+    membership.ended(now, {reason, 0, reason, step});
+    membership.launcher_exited(now, "", {});
+    settle();
+  }
+  void die(std::optional<int> rank, const std::vector<Unreached>& unreached = {}) {
+    membership.launcher_exited(now, "it died", rank);
+    settle();
+    membership.cleaned(now, unreached);
+    settle();
+  }
+  void look(const std::vector<LookAnswer>& answers) {
+    membership.looked(now, answers);
+    settle();
+  }
+  void clean() {
+    membership.cleaned(now, {});
+    settle();
+  }
+  /// Names by rank of the last world.
+  [[nodiscard]] std::vector<std::string> ranks() const {
+    std::vector<std::string> names;
+    for (const Machine& machine : launches.back().ranks) {
+      names.push_back(machine.name);
+    }
+    return names;
+  }
+  [[nodiscard]] std::string state(const std::string& name) const {
+    for (const auto& view : membership.machines(now)) {
+      if (view.machine.name == name) {
+        return view.state;
+      }
+    }
+    return "unknown";
+  }
+
+  Membership membership;
+  double now{1000.0};
+  bool answer_checks{true};
+  CheckAnswer good{true, "", "1.0", true};
+  std::vector<std::string> dead;
+  std::vector<CheckMachine> checks;
+  std::vector<LaunchWorld> launches;
+  std::vector<LookAt> looks;
+  std::vector<KillWorld> kills;
+  std::optional<FinishRun> finished;
+  std::string told;
+  int reforms{};
+  int stops{};
+};
+
+using Names = std::vector<std::string>;
+
+/// Three machines, this one in the middle, and their world is stepping.
+Scene three() {
+  Scene scene;
+  scene.answer_checks = false;
+  scene.want("a", "far1");
+  scene.want("here", "localhost");
+  scene.want("b", "far2");
+  for (const CheckMachine& check : std::vector(scene.checks)) {
+    scene.membership.checked(scene.now, check.machine, scene.good);
+  }
+  scene.answer_checks = true;
+  scene.settle();
+  scene.start();
+  scene.advance(10);
+  return scene;
+}
+
+}  // namespace
+
+TEST(membership, rank_0_is_on_the_coordinators_machine_and_computes_when_that_is_listed) {
+  const Scene scene = three();
+  EXPECT_EQ(scene.ranks(), (Names{"here", "a", "b"}));
+  EXPECT_FALSE(scene.launches.back().writer_only);
+}
+
+TEST(membership, rank_0_only_writes_when_the_coordinators_machine_is_not_listed) {
+  Scene scene;
+  scene.want("a", "far1");
+  ASSERT_EQ(scene.launches.size(), 1U);
+  EXPECT_EQ(scene.ranks(), (Names{writer_name, "a"}));
+  EXPECT_TRUE(scene.launches.back().writer_only);
+}
+
+TEST(membership, no_world_begins_before_every_new_machine_has_answered) {
+  Scene scene;
+  scene.answer_checks = false;
+  scene.want("a", "far1");
+  scene.want("here", "localhost");
+  ASSERT_EQ(scene.checks.size(), 2U);
+  scene.membership.checked(scene.now, scene.checks[1].machine, scene.good);
+  scene.pass(1.0);
+  EXPECT_TRUE(scene.launches.empty());
+  scene.membership.checked(scene.now, scene.checks[0].machine, {false, "no route", "", false});
+  scene.settle();
+  ASSERT_EQ(scene.launches.size(), 1U);
+  EXPECT_EQ(scene.ranks(), (Names{"here"}));
+  EXPECT_EQ(scene.state("a"), "left out");
+}
+
+TEST(membership, a_machine_with_another_version_is_refused_with_both_named) {
+  Scene scene;
+  scene.good.version = "0.9";
+  scene.want("a", "far1");
+  EXPECT_TRUE(scene.launches.empty());
+  EXPECT_NE(scene.told.find("fexp 0.9, and this machine has 1.0"), std::string::npos) << scene.told;
+  scene.good = {true, "", "1.0", false};
+  scene.pass(10.2);
+  EXPECT_NE(scene.told.find("orted"), std::string::npos) << scene.told;
+  scene.good.has_mpi = true;
+  scene.pass(20.2);
+  EXPECT_EQ(scene.launches.size(), 1U);
+}
+
+TEST(membership, a_machine_that_is_added_joins_once_it_has_answered) {
+  Scene scene = three();
+  scene.answer_checks = false;
+  scene.want("c", "far3");
+  scene.pass(1.0);
+  EXPECT_EQ(scene.reforms, 0);
+  scene.membership.checked(scene.now, scene.checks.back().machine, scene.good);
+  scene.settle();
+  EXPECT_EQ(scene.reforms, 1);
+  scene.pass(0.5);
+  EXPECT_EQ(scene.reforms, 1) << "asked once";
+  scene.end("reform", 20);
+  EXPECT_EQ(scene.ranks(), (Names{"here", "a", "b", "c"}));
+  EXPECT_EQ(scene.launches.back().world, 2);
+  EXPECT_TRUE(scene.kills.empty());
+}
+
+TEST(membership, a_machine_that_is_added_but_does_not_answer_disturbs_nobody) {
+  Scene scene = three();
+  scene.dead = {"c"};
+  scene.want("c", "far3");
+  scene.pass(2.0);
+  EXPECT_EQ(scene.reforms, 0);
+}
+
+TEST(membership, no_reform_is_asked_before_the_world_has_started) {
+  Scene scene;
+  scene.want("here", "localhost");
+  scene.membership.connected(scene.now);
+  scene.want("a", "far1");
+  EXPECT_EQ(scene.reforms, 0);
+  scene.membership.started(scene.now, 0);
+  scene.settle();
+  EXPECT_EQ(scene.reforms, 1);
+}
+
+TEST(membership, a_machine_that_is_removed_leaves_at_the_next_boundary) {
+  Scene scene = three();
+  EXPECT_TRUE(scene.membership.unwant(scene.now, "a"));
+  scene.settle();
+  EXPECT_EQ(scene.reforms, 1);
+  EXPECT_EQ(scene.state("a"), "leaving");
+  scene.end("reform", 20);
+  EXPECT_EQ(scene.ranks(), (Names{"here", "b"}));
+  EXPECT_EQ(scene.state("a"), "unknown");
+  EXPECT_FALSE(scene.membership.unwant(scene.now, "a"));
+}
+
+TEST(membership, the_coordinators_machine_may_be_removed_and_then_only_writes) {
+  Scene scene = three();
+  EXPECT_TRUE(scene.membership.unwant(scene.now, "here"));
+  scene.settle();
+  scene.end("reform");
+  EXPECT_EQ(scene.ranks(), (Names{writer_name, "a", "b"}));
+}
+
+TEST(membership, when_every_machine_is_removed_the_world_goes_on_with_the_last) {
+  Scene scene;
+  scene.want("here", "localhost");
+  scene.start();
+  EXPECT_TRUE(scene.membership.unwant(scene.now, "here"));
+  scene.settle();
+  EXPECT_EQ(scene.reforms, 0);
+}
+
+TEST(membership, a_machine_at_another_address_is_another_machine) {
+  Scene scene = three();
+  const std::size_t before = scene.checks.size();
+  scene.want("a", "far9");
+  EXPECT_EQ(scene.checks.size(), before + 1);
+  EXPECT_EQ(scene.reforms, 1);
+}
+
+TEST(membership, other_slots_alone_do_not_end_a_world) {
+  Scene scene = three();
+  scene.membership.want(scene.now, {"a", "far1", 8});
+  scene.settle();
+  EXPECT_EQ(scene.reforms, 0);
+}
+
+TEST(membership, a_rank_that_dies_once_is_started_again_at_once_on_the_same_machines) {
+  Scene scene = three();
+  scene.die(1);
+  ASSERT_EQ(scene.kills.size(), 1U);
+  EXPECT_EQ(scene.kills[0].machines.size(), 3U);
+  ASSERT_EQ(scene.launches.size(), 2U);
+  EXPECT_EQ(scene.ranks(), (Names{"here", "a", "b"}));
+}
+
+TEST(membership, a_machine_whose_rank_dies_twice_within_a_minute_is_left_out_for_a_while) {
+  Scene scene = three();
+  scene.die(1);
+  scene.start();
+  scene.advance(20);
+  scene.pass(2.0);
+  scene.die(1);
+  EXPECT_EQ(scene.ranks(), (Names{"here", "b"}));
+  EXPECT_EQ(scene.state("a"), "left out");
+  scene.start();
+  for (int step = 30; scene.reforms == 0 && step < 400; ++step) {
+    scene.pass(0.5);
+    scene.advance(step);
+  }
+  EXPECT_EQ(scene.reforms, 1) << "after ten seconds it is tried again and joins";
+  EXPECT_EQ(scene.state("a"), "ready");
+}
+
+TEST(membership, deaths_of_a_rank_more_than_a_minute_apart_are_two_first_ones) {
+  Scene scene = three();
+  scene.die(1);
+  scene.start();
+  for (int step = 20; step < 90; ++step) {
+    scene.pass(1.0);
+    scene.advance(step);
+  }
+  scene.die(1);
+  EXPECT_EQ(scene.ranks(), (Names{"here", "a", "b"}));
+}
+
+TEST(membership, a_machine_that_cannot_be_reached_after_a_loss_is_left_out) {
+  Scene scene = three();
+  scene.die({}, {{"b", "no route to host"}});
+  EXPECT_EQ(scene.ranks(), (Names{"here", "a"}));
+  EXPECT_NE(scene.told.find("b is left out for 10 s: no route to host"), std::string::npos) << scene.told;
+}
+
+TEST(membership, the_wait_for_a_machine_that_stays_away_doubles_up_to_ten_minutes) {
+  Scene scene = three();
+  scene.dead = {"b"};
+  scene.die({}, {{"b", "gone"}});
+  scene.start();
+  std::vector<double> times;
+  std::size_t seen = scene.checks.size();
+  const double begin = scene.now;
+  for (int step = 20; scene.now < begin + 4000.0; ++step) {
+    scene.pass(1.0);
+    scene.advance(step);
+    if (scene.checks.size() > seen) {
+      seen = scene.checks.size();
+      times.push_back(scene.now);
+    }
+  }
+  std::vector<double> waits;
+  for (std::size_t t = 1; t < times.size(); ++t) {
+    waits.push_back(times[t] - times[t - 1]);
+  }
+  ASSERT_GE(waits.size(), 7U);
+  for (std::size_t w = 0; w < waits.size(); ++w) {
+    EXPECT_NEAR(waits[w], std::min(20.0 * std::exp2(static_cast<double>(w)), 600.0), 1.5) << w;
+  }
+}
+
+TEST(membership, a_machine_that_is_asked_for_again_is_tried_now) {
+  Scene scene = three();
+  scene.die({}, {{"b", "gone"}});
+  scene.start();
+  scene.want("b", "far2");
+  EXPECT_EQ(scene.reforms, 1);
+}
+
+TEST(membership, the_run_goes_on_on_one_machine) {
+  Scene scene = three();
+  scene.die({}, {{"a", "gone"}, {"b", "gone"}});
+  EXPECT_EQ(scene.ranks(), (Names{"here"}));
+}
+
+TEST(membership, when_no_machine_can_be_used_the_run_waits) {
+  Scene scene;
+  scene.dead = {"a"};
+  scene.want("a", "far1");
+  EXPECT_TRUE(scene.launches.empty());
+  EXPECT_NE(scene.told.find("no machine can be used"), std::string::npos);
+  scene.dead.clear();
+  scene.pass(9.5);
+  EXPECT_TRUE(scene.launches.empty());
+  scene.pass(1.0);
+  EXPECT_EQ(scene.launches.size(), 1U);
+}
+
+TEST(membership, a_world_without_news_is_looked_at_after_three_seconds) {
+  Scene scene = three();
+  scene.pass(2.8);
+  EXPECT_TRUE(scene.looks.empty());
+  scene.pass(0.4);
+  ASSERT_EQ(scene.looks.size(), 1U);
+  EXPECT_EQ(scene.looks[0].machines.size(), 3U);
+  scene.pass(5.0);
+  EXPECT_EQ(scene.looks.size(), 1U) << "not again before the answers are there";
+}
+
+TEST(membership, a_world_with_long_epochs_is_looked_at_after_ten_of_them) {
+  Scene scene = three();
+  scene.pass(2.0);
+  scene.advance(20);
+  scene.pass(19.0);
+  EXPECT_TRUE(scene.looks.empty());
+  scene.pass(1.5);
+  EXPECT_EQ(scene.looks.size(), 1U);
+}
+
+TEST(membership, a_machine_whose_heart_stands_still_while_others_beat_is_left_out) {
+  Scene scene = three();
+  scene.pass(3.2);
+  scene.look({{"here", true, "", 0.1}, {"a", true, "", 3.0}, {"b", true, "", 0.2}});
+  ASSERT_EQ(scene.kills.size(), 1U);
+  EXPECT_EQ(scene.kills[0].machines.size(), 3U) << "a frozen worker can be killed";
+  scene.clean();
+  EXPECT_EQ(scene.ranks(), (Names{"here", "b"}));
+}
+
+TEST(membership, a_machine_that_is_cut_off_is_left_out_and_not_waited_for) {
+  Scene scene = three();
+  scene.pass(3.2);
+  scene.look({{"here", true, "", 0.1}, {"a", true, "", 0.3}, {"b", false, "no answer", {}}});
+  ASSERT_EQ(scene.kills.size(), 1U);
+  EXPECT_EQ(scene.kills[0].machines.size(), 2U);
+  scene.clean();
+  EXPECT_EQ(scene.ranks(), (Names{"here", "a"}));
+}
+
+TEST(membership, a_world_whose_machines_are_all_well_is_left_alone) {
+  Scene scene = three();
+  scene.pass(3.2);
+  scene.look({{"here", true, "", 0.1}, {"a", true, "", 1.9}, {"b", true, "", {}}});
+  EXPECT_TRUE(scene.kills.empty());
+  scene.pass(3.2);
+  EXPECT_EQ(scene.looks.size(), 2U);
+}
+
+TEST(membership, answers_that_the_world_has_overtaken_count_for_nothing) {
+  Scene scene = three();
+  scene.pass(3.2);
+  scene.advance(20);
+  scene.look({{"here", true, "", 0.1}, {"a", true, "", 5.0}, {"b", false, "no answer", {}}});
+  EXPECT_TRUE(scene.kills.empty());
+}
+
+TEST(membership, when_no_heart_beats_anywhere_the_world_is_started_again_on_all) {
+  Scene scene = three();
+  scene.pass(3.2);
+  scene.look({{"here", true, "", 9.0}, {"a", true, "", 9.0}, {"b", true, "", 9.0}});
+  EXPECT_TRUE(scene.kills.empty()) << "this machine may be slow";
+  scene.pass(3.2);
+  scene.look({{"here", true, "", 12.0}, {"a", true, "", 12.0}, {"b", true, "", 12.0}});
+  ASSERT_EQ(scene.kills.size(), 1U);
+  scene.clean();
+  EXPECT_EQ(scene.ranks(), (Names{"here", "a", "b"}));
+}
+
+TEST(membership, a_world_that_stands_still_with_all_hearts_beating_is_ended_after_two_minutes) {
+  Scene scene = three();
+  for (int k = 0; k < 118; ++k) {
+    scene.pass(1.0);
+    scene.look({{"here", true, "", 0.1}, {"a", true, "", 0.1}, {"b", true, "", 0.1}});
+  }
+  EXPECT_TRUE(scene.kills.empty());
+  scene.pass(3.0);
+  EXPECT_EQ(scene.kills.size(), 1U);
+}
+
+TEST(membership, a_world_of_which_nothing_is_heard_is_ended_after_a_minute) {
+  Scene scene;
+  scene.want("here", "localhost");
+  scene.pass(59.0);
+  EXPECT_TRUE(scene.kills.empty());
+  scene.pass(2.0);
+  EXPECT_EQ(scene.kills.size(), 1U);
+}
+
+TEST(membership, a_world_that_loads_a_large_model_is_given_time) {
+  Scene scene;
+  scene.want("here", "localhost");
+  scene.membership.connected(scene.now);
+  scene.pass(600.0);
+  EXPECT_TRUE(scene.kills.empty());
+}
+
+TEST(membership, silence_while_this_process_slept_means_nothing) {
+  Scene scene = three();
+  scene.now += 1000.0;
+  scene.membership.woke_up(scene.now);
+  scene.membership.tick(scene.now);
+  scene.settle();
+  EXPECT_TRUE(scene.looks.empty());
+  EXPECT_TRUE(scene.kills.empty());
+}
+
+TEST(membership, a_lost_rank_0_ends_the_world_unless_mpirun_ends_by_itself) {
+  Scene scene = three();
+  scene.membership.connection_lost(scene.now);
+  scene.pass(4.0);
+  EXPECT_TRUE(scene.kills.empty());
+  scene.pass(1.5);
+  EXPECT_EQ(scene.kills.size(), 1U);
+}
+
+TEST(membership, a_world_that_has_said_its_end_but_does_not_leave_is_killed_and_its_word_counts) {
+  Scene scene = three();
+  scene.membership.ended(scene.now, {"completed", 0, "", 100});
+  scene.pass(4.5);
+  EXPECT_TRUE(scene.kills.empty());
+  scene.pass(1.0);
+  ASSERT_EQ(scene.kills.size(), 1U);
+  scene.clean();
+  ASSERT_TRUE(scene.finished);
+  EXPECT_EQ(scene.finished->outcome, Outcome::completed);
+}
+
+TEST(membership, a_completed_run_and_a_fault_end_it) {
+  Scene completed = three();
+  completed.end("completed");
+  ASSERT_TRUE(completed.finished);
+  EXPECT_EQ(completed.finished->outcome, Outcome::completed);
+  Scene fault = three();
+  fault.membership.ended(fault.now, {"fault", 3, "too thin", 20});
+  fault.membership.launcher_exited(fault.now, "exit code 3", 0);
+  fault.settle();
+  ASSERT_TRUE(fault.finished);
+  EXPECT_EQ(fault.finished->outcome, Outcome::fault);
+  EXPECT_EQ(fault.finished->exit_code, 3);
+  EXPECT_EQ(fault.finished->message, "too thin");
+}
+
+TEST(membership, an_interruption_that_nobody_asked_for_is_a_loss) {
+  Scene scene = three();
+  scene.end("interrupted");
+  EXPECT_FALSE(scene.finished);
+  EXPECT_EQ(scene.kills.size(), 1U);
+  scene.clean();
+  EXPECT_EQ(scene.launches.size(), 2U);
+}
+
+TEST(membership, a_stop_ends_the_run_in_order) {
+  Scene scene = three();
+  scene.membership.stop(scene.now);
+  scene.settle();
+  EXPECT_EQ(scene.stops, 1);
+  scene.end("interrupted");
+  ASSERT_TRUE(scene.finished);
+  EXPECT_EQ(scene.finished->outcome, Outcome::stopped);
+  EXPECT_EQ(scene.launches.size(), 1U);
+}
+
+TEST(membership, a_second_stop_kills_the_world) {
+  Scene scene = three();
+  scene.membership.stop(scene.now);
+  scene.membership.stop(scene.now);
+  scene.settle();
+  ASSERT_EQ(scene.kills.size(), 1U);
+  scene.clean();
+  ASSERT_TRUE(scene.finished);
+  EXPECT_EQ(scene.finished->outcome, Outcome::stopped);
+}
+
+TEST(membership, a_world_that_does_not_heed_a_stop_is_killed_after_half_a_minute) {
+  Scene scene = three();
+  scene.membership.stop(scene.now);
+  scene.pass(29.0);
+  EXPECT_TRUE(scene.kills.empty());
+  scene.pass(2.0);
+  EXPECT_EQ(scene.kills.size(), 1U);
+}
+
+TEST(membership, a_stop_without_a_world_and_a_stop_while_one_is_cleaned_up_end_the_run) {
+  Scene waiting;
+  waiting.dead = {"a"};
+  waiting.want("a", "far1");
+  waiting.membership.stop(waiting.now);
+  waiting.settle();
+  EXPECT_TRUE(waiting.finished);
+  Scene cleaning = three();
+  cleaning.membership.launcher_exited(cleaning.now, "it died", 1);
+  cleaning.membership.stop(cleaning.now);
+  cleaning.settle();
+  EXPECT_FALSE(cleaning.finished);
+  cleaning.clean();
+  ASSERT_TRUE(cleaning.finished);
+  EXPECT_EQ(cleaning.launches.size(), 1U);
+}
+
+TEST(membership, a_full_disk_is_waited_for_longer_each_time) {
+  Scene scene = three();
+  scene.end("output_error");
+  EXPECT_FALSE(scene.finished);
+  scene.pass(4.5);
+  EXPECT_EQ(scene.launches.size(), 1U);
+  scene.pass(1.0);
+  EXPECT_EQ(scene.launches.size(), 2U);
+  scene.start();
+  scene.end("output_error");
+  scene.pass(9.5);
+  EXPECT_EQ(scene.launches.size(), 2U);
+  scene.pass(1.0);
+  EXPECT_EQ(scene.launches.size(), 3U);
+  scene.start();
+  scene.advance(30);
+  scene.end("output_error");
+  scene.pass(5.5);
+  EXPECT_EQ(scene.launches.size(), 4U) << "a step was gained, so the waits begin anew";
+}
+
+TEST(membership, three_worlds_that_die_before_they_start_on_machines_that_answer_end_the_run) {
+  Scene scene;
+  scene.want("here", "localhost");
+  scene.die({});
+  scene.die({});
+  EXPECT_FALSE(scene.finished);
+  scene.die({});
+  ASSERT_TRUE(scene.finished);
+  EXPECT_EQ(scene.finished->outcome, Outcome::gave_up);
+  EXPECT_NE(scene.finished->message.find("it died"), std::string::npos);
+}
+
+TEST(membership, worlds_that_die_because_a_machine_is_away_do_not_count_against_the_run) {
+  Scene scene = three();
+  for (int k = 0; k < 4; ++k) {
+    scene.die({}, {{"b", "gone"}});
+    scene.pass(700.0);  // b answers again
+    scene.die({}, {{"b", "gone"}});
+  }
+  EXPECT_FALSE(scene.finished);
+}
+
+TEST(membership, a_start_between_deaths_breaks_the_row) {
+  Scene scene;
+  scene.want("here", "localhost");
+  scene.die({});
+  scene.die({});
+  scene.start();
+  scene.advance(10);
+  scene.die({});
+  scene.die({});
+  EXPECT_FALSE(scene.finished);
+}
+
+TEST(membership, worlds_that_start_but_gain_no_step_end_the_run_in_the_end) {
+  Scene scene;
+  scene.want("here", "localhost");
+  scene.start();
+  scene.advance(10);
+  scene.die({});  // It has gained steps
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_FALSE(scene.finished) << k;
+    scene.start(5);
+    scene.advance(10);
+    scene.die({});
+  }
+  ASSERT_TRUE(scene.finished);
+  EXPECT_EQ(scene.finished->outcome, Outcome::gave_up);
+}
+
+TEST(membership, an_event_is_applied_when_a_world_ends_for_it) {
+  Scene scene({{100, true, {"b", "far2", 0}, false}, {50, false, {"a", "a", 0}, false}});
+  scene.answer_checks = false;
+  scene.want("here", "localhost");
+  scene.want("a", "far1");
+  for (const CheckMachine& check : std::vector(scene.checks)) {
+    scene.membership.checked(scene.now, check.machine, scene.good);
+  }
+  scene.answer_checks = true;
+  scene.settle();
+  EXPECT_EQ(scene.membership.event_steps(), (std::vector<std::int64_t>{50, 100}));
+  scene.start();
+  scene.advance(56);
+  EXPECT_EQ(scene.reforms, 0) << "rank 0 does it by itself";
+  scene.end("reform", 56);
+  EXPECT_EQ(scene.ranks(), (Names{"here"}));
+  EXPECT_EQ(scene.membership.event_steps(), (std::vector<std::int64_t>{100}));
+  scene.start(56);
+  scene.end("reform", 110);
+  EXPECT_EQ(scene.ranks(), (Names{"here", "b"}));
+  EXPECT_TRUE(scene.membership.event_steps().empty());
+}
+
+TEST(membership, events_at_step_0_are_applied_before_the_first_world) {
+  Scene scene({{0, true, {"a", "far1", 0}, false}});
+  scene.want("here", "localhost");
+  ASSERT_EQ(scene.launches.size(), 1U);
+  EXPECT_EQ(scene.ranks(), (Names{"here", "a"}));
+}
+
+TEST(membership, an_event_that_a_resumed_world_is_already_beyond_is_applied_by_a_reform) {
+  Scene scene({{100, true, {"a", "far1", 0}, false}});
+  scene.want("here", "localhost");
+  scene.start(128);
+  EXPECT_EQ(scene.reforms, 1);
+}
+
+TEST(membership, a_machine_under_way_is_checked_with_workers_of_earlier_worlds_ended) {
+  Scene scene = three();
+  EXPECT_EQ(scene.checks.front().below, 1);
+  scene.die(1);
+  scene.start();
+  scene.want("c", "far3");
+  EXPECT_EQ(scene.checks.back().below, 2) << "the present world's own workers may run there under another name";
+}
+
+TEST(membership, failures_are_forgotten_after_five_good_minutes) {
+  Scene scene = three();
+  scene.die({}, {{"b", "gone"}});
+  scene.start();
+  int step = 20;
+  const auto run_for = [&](double seconds) {
+    for (const double end = scene.now + seconds; scene.now < end;) {
+      scene.pass(1.0);
+      scene.advance(++step);
+    }
+  };
+  run_for(11.0);
+  scene.end("reform");
+  scene.start(step);
+  run_for(301.0);
+  scene.told.clear();
+  scene.die({}, {{"b", "gone"}});
+  EXPECT_NE(scene.told.find("b is left out for 10 s"), std::string::npos) << scene.told;
+}
+
+}  // namespace fexp::coordinator

@@ -15,23 +15,14 @@ Index body_of_element(const model::Model& model, Index element) {
 
 }  // namespace
 
-Fault Simulation::not_finite_fault(const std::vector<solve::IslandReport>& islands) const {
+Fault Simulation::not_finite_fault(const RankRecord& record) const {
   Fault fault;
   fault.kind = FaultKind::not_finite;
-  Index steps = 0;
-  for (const solve::IslandReport& island : islands) {
-    // The earliest failure counts; of several at one step, the lowest node.
-    if (island.stop == solve::StopReason::not_finite &&
-        (fault.node == no_index || island.steps_done < steps ||
-         (island.steps_done == steps && island.stop_node < fault.node))) {
-      fault.node = island.stop_node;
-      steps = island.steps_done;
-    }
-  }
+  fault.node = record.broken_node;
   fault.body = model_.node_body[at(fault.node)];
   fault.element = model_.corner[at(model_.corner_start[at(fault.node)])] / 3;
   fault.message = fmt::format("step {}: the velocity of node {} of body \"{}\" (element {}) is not a finite number",
-                              state_.step + steps + 1, model_.node_label[at(fault.node)],
+                              state_.step + record.broken_steps + 1, model_.node_label[at(fault.node)],
                               model_.bodies[at(fault.body)].name, model_.element_label[at(fault.element)]);
   fault.cure = "check density, thickness, loads and penalty_scale there, or lower run.safety";
   return fault;
@@ -50,7 +41,9 @@ Fault Simulation::collapsed_fault() const {
   return fault;
 }
 
-Fault Simulation::energy_fault(const EpochReport& report) const {
+Fault Simulation::energy_fault(const EpochReport& report) {
+  // Rank 0, which speaks for all, is to find the most strained element of the whole model.
+  collect();
   Fault fault;
   fault.kind = FaultKind::energy_drift;
   std::string where;

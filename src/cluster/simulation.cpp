@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cluster/simulation.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <chrono>
 
-#include "cluster/swept_boxes.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::cluster {
@@ -18,6 +16,10 @@ constexpr double margin_used = 0.9;
 constexpr int most_attempts = 40;
 /// A step equal to the stable one but for rounding is stable.
 constexpr double rounding = 1.0 + 1.0e-9;
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 double frequency2(const solve::CriticalStep& critical) noexcept { return 4.0 / (critical.step * critical.step); }
 
@@ -33,33 +35,71 @@ struct Simulation::Attempt {
   double contact_frequency2{};    ///< Raised when the guard trips.
   double element_frequency2{};    ///< Likewise.
   std::vector<double> allowance;  // [bodies]
-  std::vector<Box> swept;         // [bodies]
 };
 
-Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel)
-    : model_(model), state_(model::initial_state(model)), workspace_(model, solve::select_element_kernel(kernel)) {
-  critical_ = solve::critical_step(model_, state_);
+/// No body placed or evaluated yet. Every rank has the whole state of the start, so the notices need not be told.
+Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, World world, Blank /*blank*/)
+    : model_(model),
+      world_(std::move(world)),
+      state_(model::initial_state(model)),
+      backup_(state_),
+      workspace_(model, solve::select_element_kernel(kernel)),
+      notices_(model.bodies.size()),
+      owner_(model.bodies.size(), no_machine),
+      arrived_(model.bodies.size(), true) {
+  parallel::for_each(model_.body_count(), 1, [&](Index b) { notices_[at(b)] = notice_of(model_, state_, b); });
+}
+
+Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, World world)
+    : Simulation(model, kernel, std::move(world), Blank{}) {
   Attempt still;
   still.allowance.assign(model_.bodies.size(), 0.0);
-  still.swept = swept_boxes(model_, state_, still.allowance);
   form_islands(still);
   parallel::for_each(static_cast<Index>(solvers_.size()), 1, [&](Index i) {
-    solvers_[at(i)]->evaluate(model_, state_, workspace_);
-    solvers_[at(i)]->store(model_, state_);
+    if (solvers_[at(i)]) {
+      solvers_[at(i)]->store(model_, state_);
+    }
   });
-  start_ = solve::diagnostics(model_, state_);
+  share(RankRecord{}, std::vector<double>(islands_.size(), 0.0));
+  critical_ = smallest_critical_step();
+  start_ = sum_of_diagnostics();
   extremes_.fewest_islands = static_cast<Index>(islands_.size());
+  load_.busy_seconds.assign(world_.machines.size(), 0.0);
 }
 
 EpochReport Simulation::present() const {
   EpochReport report;
   report.critical = critical_;
   report.islands = static_cast<Index>(islands_.size());
-  report.diagnostics = solve::diagnostics(model_, state_);
+  report.diagnostics = sum_of_diagnostics();
   return report;
 }
 
-/// Step and number of steps towards the target, and what the bodies may sweep meanwhile.
+std::vector<double> Simulation::elements_of(const model::Model& model) {
+  std::vector<double> elements;
+  for (const model::Body& body : model.bodies) {
+    elements.push_back(static_cast<double>(body.elements.size()));
+  }
+  return elements;
+}
+
+solve::CriticalStep Simulation::smallest_critical_step() const {
+  solve::CriticalStep smallest;
+  for (const BodyNotice& notice : notices_) {
+    smallest = solve::smaller(smallest, notice.critical);
+  }
+  return smallest;
+}
+
+solve::Diagnostics Simulation::sum_of_diagnostics() const {
+  solve::Diagnostics sum;
+  for (const BodyNotice& notice : notices_) {
+    sum += notice.diagnostics;
+  }
+  return sum;
+}
+
+/// Step and number of steps towards the target, and how far the bodies may move meanwhile.
 void Simulation::plan(double target, Attempt& attempt) const {
   const double frequency2 = attempt.element_frequency2 + attempt.contact_frequency2;
   const double largest = model_.run.safety * 2.0 / std::sqrt(frequency2);
@@ -69,88 +109,90 @@ void Simulation::plan(double target, Attempt& attempt) const {
   attempt.steps = reaches_target ? std::max(static_cast<Index>(needed), Index{1}) : attempt.most_steps;
   attempt.dt = reaches_target ? left / static_cast<double>(attempt.steps) : largest;
   attempt.end_time = reaches_target ? target : state_.time + static_cast<double>(attempt.steps) * attempt.dt;
-  attempt.allowance = travel_allowance(model_, state_, attempt.dt, attempt.steps);
-  attempt.swept = swept_boxes(model_, state_, attempt.allowance);
+  attempt.allowance.resize(model_.bodies.size());
+  for (Index b = 0; b < model_.body_count(); ++b) {
+    attempt.allowance[at(b)] = travel_allowance(model_, b, notices_[at(b)].extent, attempt.dt, attempt.steps);
+  }
 }
 
-/// Finds the islands and keeps the solver of every island that is still the same.
+/// Finds the islands of the attempt and sees to it that every machine has its own.
 void Simulation::form_islands(const Attempt& attempt) {
-  std::vector<Island> islands = find_islands(model_, attempt.swept);
-  std::vector<std::unique_ptr<solve::IslandSolver>> solvers(islands.size());
-  // Both lists are in ascending order of their islands' lowest bodies.
-  std::size_t old = 0;
-  for (std::size_t i = 0; i < islands.size(); ++i) {
-    while (old < islands_.size() && islands_[old].bodies.front() < islands[i].bodies.front()) {
-      ++old;
-    }
-    if (old < islands_.size() && islands_[old] == islands[i]) {
-      solvers[i] = std::move(solvers_[old]);
-    }
+  std::vector<Box> swept(model_.bodies.size());
+  for (std::size_t b = 0; b < swept.size(); ++b) {
+    swept[b] = swept_box(notices_[b].extent, attempt.allowance[b]);
   }
-  islands_ = std::move(islands);
-  solvers_ = std::move(solvers);
-  parallel::for_each(static_cast<Index>(islands_.size()), 1, [&](Index i) {
-    if (!solvers_[at(i)]) {
-      solvers_[at(i)] = std::make_unique<solve::IslandSolver>();
-      solvers_[at(i)]->assign(model_, state_, islands_[at(i)].bodies, islands_[at(i)].barriers);
-    }
-  });
-  island_of_body_.assign(model_.bodies.size(), no_index);
-  for (std::size_t i = 0; i < islands_.size(); ++i) {
-    for (const Index body : islands_[i].bodies) {
-      island_of_body_[at(body)] = static_cast<Index>(i);
-    }
+  std::vector<Island> islands = find_islands(model_, swept);
+  place(islands);
+  take_up_solvers(std::move(islands));
+  for (const Index body : own_bodies_) {
+    model::copy_body(model_, state_, body, backup_);
   }
 }
 
-std::vector<solve::IslandReport> Simulation::advance_islands(const Attempt& attempt, std::int64_t hash_every,
-                                                             EpochReport& report) {
-  const auto count = static_cast<Index>(solvers_.size());
-  std::vector<solve::IslandReport> islands(solvers_.size());
-  std::vector<std::vector<solve::HashRecord>> hashes(solvers_.size());
-  std::vector<Index> order(solvers_.size());
-  for (Index i = 0; i < count; ++i) {
-    order[at(i)] = i;
+/// Steps this machine's islands, and tells all ranks what came of it.
+RankRecord Simulation::advance_islands(const Attempt& attempt, std::int64_t hash_every, Request request,
+                                       EpochReport& report) {
+  std::vector<Index> order;
+  for (Index i = 0; i < static_cast<Index>(solvers_.size()); ++i) {
+    if (solvers_[at(i)]) {
+      order.push_back(i);
+    }
   }
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
     return solvers_[at(a)]->element_count() > solvers_[at(b)]->element_count();
   });
+  const auto start = Clock::now();
+  std::vector<solve::IslandReport> islands(order.size());
+  std::vector<double> seconds(solvers_.size(), 0.0);
+  std::vector<std::vector<solve::HashRecord>> hashes(order.size());
   const solve::EpochPlan plan{attempt.dt, attempt.steps, attempt.end_time, hash_every, attempt.allowance};
-  parallel::for_each(count, 1, [&](Index k) {
-    const std::size_t i = at(order[at(k)]);
-    islands[i] = solvers_[i]->advance(model_, state_, workspace_, plan, hashes[i]);
-    solvers_[i]->store(model_, state_);
+  parallel::for_each(static_cast<Index>(order.size()), 1, [&](Index k) {
+    solve::IslandSolver& solver = *solvers_[at(order[at(k)])];
+    const auto island_start = Clock::now();
+    islands[at(k)] = solver.advance(model_, state_, workspace_, plan, hashes[at(k)]);
+    solver.store(model_, state_);
+    seconds[at(order[at(k)])] = seconds_since(island_start);
   });
+  RankRecord own;
+  own.busy_seconds = seconds_since(start);
+  own.request = request;
+  for (const solve::IslandReport& island : islands) {
+    own.add(island);
+  }
   report.hashes.clear();
   for (const auto& list : hashes) {
     report.hashes.insert(report.hashes.end(), list.begin(), list.end());
   }
-  std::sort(report.hashes.begin(), report.hashes.end(), [](const solve::HashRecord& a, const solve::HashRecord& b) {
-    return a.step != b.step ? a.step < b.step : a.body < b.body;
-  });
-  return islands;
+  return share(own, seconds);
 }
 
 void Simulation::put_back() {
-  state_ = backup_;
+  for (const Index body : own_bodies_) {
+    model::copy_body(model_, backup_, body, state_);
+  }
+  notices_ = start_notices_;
   parallel::for_each(static_cast<Index>(solvers_.size()), 1, [&](Index i) {
-    solvers_[at(i)]->assign(model_, state_, islands_[at(i)].bodies, islands_[at(i)].barriers);
-    solvers_[at(i)]->evaluate(model_, state_, workspace_);
+    if (solvers_[at(i)]) {
+      solvers_[at(i)]->assign(model_, state_, islands_[at(i)].bodies, islands_[at(i)].barriers);
+      solvers_[at(i)]->evaluate(model_, state_, workspace_);
+    }
   });
 }
 
-EpochReport Simulation::run_epoch(double target, std::int64_t hash_every) {
+EpochReport Simulation::run_epoch(double target, std::int64_t hash_every, Request request) {
+  const auto start = Clock::now();
   EpochReport report;
   Attempt attempt;
   attempt.most_steps = model_.run.epoch_steps;
   attempt.contact_frequency2 = contact_frequency2_;
   attempt.element_frequency2 = frequency2(critical_);
-  backup_ = state_;
+  start_notices_ = notices_;
   for (int tries = 0;; ++tries) {
     plan(target, attempt);
     form_islands(attempt);
-    const std::vector<solve::IslandReport> islands = advance_islands(attempt, hash_every, report);
-    const Verdict verdict = guard(attempt, islands, tries < most_attempts, report.fault);
+    const RankRecord record = advance_islands(attempt, hash_every, request, report);
+    report.request = record.request;
+    const Verdict verdict = guard(attempt, record, tries < most_attempts, report.fault);
     if (verdict != Verdict::accept) {
       put_back();
       ++report.rollbacks;
@@ -163,44 +205,39 @@ EpochReport Simulation::run_epoch(double target, std::int64_t hash_every) {
       state_.time = attempt.end_time;
       report.dt = attempt.dt;
       report.steps = attempt.steps;
-      gather(islands, report);
+      gather(record, report);
       break;
     }
+  }
+  if (hash_every > 0) {
+    share_hashes(report);
   }
   report.islands = static_cast<Index>(islands_.size());
   report.critical = critical_;
   judge(report);
+  ++load_.epochs;
+  load_.seconds += seconds_since(start);
   return report;
 }
 
 /// Decides from global data whether an attempt stands; otherwise lowers what has to be lowered for the next one.
-Simulation::Verdict Simulation::guard(Attempt& attempt, const std::vector<solve::IslandReport>& islands, bool may_retry,
-                                      Fault& fault) {
-  Index good = attempt.steps;
-  bool left_box = false, broken = false;
-  double contact2 = 0.0;
-  for (const solve::IslandReport& island : islands) {
-    good = std::min(good, island.steps_done);
-    left_box = left_box || island.stop == solve::StopReason::left_swept_box;
-    broken = broken || island.stop == solve::StopReason::not_finite;
-    contact2 = std::max(contact2, island.contact_frequency2);
-  }
-  if (left_box) {
+Simulation::Verdict Simulation::guard(Attempt& attempt, const RankRecord& record, bool may_retry, Fault& fault) {
+  if (record.left_box) {
     // First of all, as whatever else went wrong may have come of a contact that was missed. A single step stays within:
     // its way is that of the first half step, which the allowance was made from.
     attempt.most_steps = std::max(attempt.steps / 2, Index{1});
     return Verdict::redo;
   }
-  if (broken) {
+  if (record.broken_node != no_index) {
     // The steps up to the one that failed are redone, so that the results end with the last sound state.
     if (fault.kind == FaultKind::none) {
-      fault = not_finite_fault(islands);
+      fault = not_finite_fault(record);
     }
-    attempt.most_steps = good;
-    return good == 0 ? Verdict::give_up : Verdict::redo;
+    attempt.most_steps = std::min(attempt.steps, record.good_steps);
+    return attempt.most_steps == 0 ? Verdict::give_up : Verdict::redo;
   }
-  const solve::CriticalStep critical = solve::critical_step(model_, state_);
-  const double element2 = frequency2(critical);
+  const solve::CriticalStep critical = smallest_critical_step();
+  const double element2 = frequency2(critical), contact2 = record.contact_frequency2;
   const double allowed = 2.0 * (1.0 - (1.0 - margin_used) * (1.0 - model_.run.safety));
   const bool collapsed = !(critical.step > model_.run.step_collapse * model_.first_critical_step);
   const bool stable =
@@ -218,24 +255,25 @@ Simulation::Verdict Simulation::guard(Attempt& attempt, const std::vector<solve:
   return Verdict::accept;
 }
 
-void Simulation::gather(const std::vector<solve::IslandReport>& islands, EpochReport& report) const {
-  for (std::size_t i = 0; i < islands.size(); ++i) {
-    const solve::IslandReport& island = islands[i];
-    report.active_pairs += island.active_pairs;
-    report.candidates += island.candidates;
-    report.searches += island.searches;
-    report.largest_island_elements = std::max(report.largest_island_elements, solvers_[i]->element_count());
-    if (island.deepest > report.deepest) {
-      report.deepest = island.deepest;
-      report.deepest_node = island.deepest_node;
-      report.deepest_element = island.deepest_element;
+void Simulation::gather(const RankRecord& record, EpochReport& report) const {
+  report.active_pairs = record.active_pairs;
+  report.candidates = record.candidates;
+  report.searches = record.searches;
+  report.deepest = record.deepest;
+  report.deepest_node = record.deepest_node;
+  report.deepest_element = record.deepest_element;
+  for (const Island& island : islands_) {
+    Index elements = 0;
+    for (const Index body : island.bodies) {
+      elements += model_.bodies[at(body)].elements.size();
     }
+    report.largest_island_elements = std::max(report.largest_island_elements, elements);
   }
 }
 
 /// Energy and momentum errors of the present state; the scales are the largest sums of moduli so far.
 void Simulation::judge(EpochReport& report) {
-  report.diagnostics = solve::diagnostics(model_, state_);
+  report.diagnostics = sum_of_diagnostics();
   const solve::Energies& e = report.diagnostics.energies;
   const solve::Momenta& m = report.diagnostics.momenta;
   energy_scale_ = std::max(
@@ -249,22 +287,24 @@ void Simulation::judge(EpochReport& report) {
   if (report.fault.kind == FaultKind::none && !(report.energy_error <= model_.run.energy_drift_limit)) {
     report.fault = energy_fault(report);
   }
+  extremes_.add(report);
+}
 
-  RunExtremes& x = extremes_;
-  x.energy_error = std::max(x.energy_error, report.energy_error);
-  x.linear_momentum_error = std::max(x.linear_momentum_error, report.linear_momentum_error);
-  x.angular_momentum_error = std::max(x.angular_momentum_error, report.angular_momentum_error);
+void RunExtremes::add(const EpochReport& report) {
+  energy_error = std::max(energy_error, report.energy_error);
+  linear_momentum_error = std::max(linear_momentum_error, report.linear_momentum_error);
+  angular_momentum_error = std::max(angular_momentum_error, report.angular_momentum_error);
   if (report.steps > 0) {
-    x.smallest_dt = std::min(x.smallest_dt, report.dt);
-    x.largest_dt = std::max(x.largest_dt, report.dt);
+    smallest_dt = std::min(smallest_dt, report.dt);
+    largest_dt = std::max(largest_dt, report.dt);
   }
-  x.fewest_islands = std::min(x.fewest_islands, report.islands);
-  x.most_islands = std::max(x.most_islands, report.islands);
-  x.most_active_pairs = std::max(x.most_active_pairs, report.active_pairs);
-  x.deepest = std::max(x.deepest, report.deepest);
-  x.searches += report.searches;
-  x.rollbacks += report.rollbacks;
-  ++x.epochs;
+  fewest_islands = std::min(fewest_islands, report.islands);
+  most_islands = std::max(most_islands, report.islands);
+  most_active_pairs = std::max(most_active_pairs, report.active_pairs);
+  deepest = std::max(deepest, report.deepest);
+  searches += report.searches;
+  rollbacks += report.rollbacks;
+  ++epochs;
 }
 
 }  // namespace fexp::cluster

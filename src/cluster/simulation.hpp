@@ -3,10 +3,17 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "cluster/body_notice.hpp"
+#include "cluster/communicator.hpp"
+#include "cluster/epoch_report.hpp"
 #include "cluster/interaction_graph.hpp"
+#include "cluster/placement.hpp"
+#include "cluster/placement_ledger.hpp"
+#include "cluster/rank_record.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
 #include "solve/diagnostics.hpp"
@@ -15,68 +22,48 @@
 
 namespace fexp::cluster {
 
-enum class FaultKind { none, not_finite, step_collapsed, energy_drift };
+/// Who takes part in a run: this rank's communicator and the machines, the same list on every rank.
+struct World {
+  std::shared_ptr<Communicator> communicator;
+  std::vector<Machine> machines;
+  PlacementRule rule{PlacementRule::fewest_elements};
 
-/// A physical failure of the run: what happened where, in one sentence, and the usual cure.
-struct Fault {
-  FaultKind kind{FaultKind::none};
-  std::string message;
-  std::string cure;
-  Index body{no_index};
-  Index element{no_index};
-  Index node{no_index};
+  /// One machine, one rank.
+  [[nodiscard]] static World alone();
 };
 
-/// What one epoch did.
-struct EpochReport {
-  double dt{};  ///< [time]
-  Index steps{};
-  Index islands{};
-  Index largest_island_elements{};
-  Index rollbacks{};     ///< Times the epoch was put back and redone
-  Index active_pairs{};  ///< Contacts at the end
-  Index candidates{};
-  Index searches{};  ///< Contact searches during the epoch
-  double deepest{};  ///< Deepest penetration over contact distance [-]
-  Index deepest_node{no_index};
-  Index deepest_element{no_index};
-  solve::CriticalStep critical;    ///< Of the elements, at the end
-  solve::Diagnostics diagnostics;  ///< At the end
-  double energy_error{};           ///< Relative imbalance at the end [-]
-  double linear_momentum_error{};  ///< Relative to the sum of moduli [-]
-  double angular_momentum_error{};
-  std::vector<solve::HashRecord> hashes;  ///< By step, then body.
-  Fault fault;
-};
-
-/// Largest values over the run.
-struct RunExtremes {
-  double energy_error{};
-  double linear_momentum_error{};
-  double angular_momentum_error{};
-  double smallest_dt{HUGE_VAL};
-  double largest_dt{};
-  Index fewest_islands{};
-  Index most_islands{};
-  Index most_active_pairs{};
-  double deepest{};
+/// How the work went since this world began; the same on every rank.
+struct WorldLoad {
+  std::vector<double> busy_seconds;  ///< Spent stepping, shape [machines]
+  double waiting_seconds{};          ///< Spent in the communicator, of the rank that spent most
+  double seconds{};                  ///< In all
   std::int64_t epochs{};
-  std::int64_t rollbacks{};
-  std::int64_t searches{};
+  std::int64_t messages{};  ///< Of all ranks
+  std::int64_t message_bytes{};
+  BalanceReport balance;  ///< From the measured cost of the present islands
 };
 
-/// Integrates a model epoch by epoch on one machine. At an epoch's start the swept boxes of all bodies give the
-/// interaction graph, its components are the islands, and the islands are stepped side by side. A guard checks
-/// afterwards that no body left its swept box and that the step was stable; where it trips, the epoch is put back to
-/// its start and redone shorter or with a smaller step.
+/// Integrates a model epoch by epoch on the machines of a world. At an epoch's start the swept boxes of all bodies give
+/// the interaction graph, its components are the islands, each island lives on one machine, and the islands are stepped
+/// side by side without a word between machines. A guard checks afterwards that no body left its swept box and that the
+/// step was stable; where it trips, the epoch is put back to its start and redone shorter or with a smaller step.
+///
+/// Every rank has the whole model and room for the whole state, of which only the bodies of its own machine are up to
+/// date. What is decided is decided by all ranks alike, from what all of them know. All ranks call the same functions
+/// with the same arguments, unless a comment says otherwise.
 class Simulation {
  public:
-  Simulation(const model::Model& model, solve::KernelChoice kernel);
+  Simulation(const model::Model& model, solve::KernelChoice kernel, World world = World::alone());
+  /// Takes up a run where pieces of a snapshot have it, on whatever machines there are now. Every rank gives the pieces
+  /// that it holds; together they hold every body once at least, of one moment. Throws ShipmentError when they do not.
+  Simulation(const model::Model& model, solve::KernelChoice kernel, World world, std::span<const Bytes> pieces);
 
-  /// Steps until `target` time or the end of one epoch, whichever comes first. `hash_every`: see EpochPlan.
-  EpochReport run_epoch(double target, std::int64_t hash_every = 0);
+  /// Steps until `target` time or the end of one epoch, whichever comes first. `hash_every`: see EpochPlan. `request`:
+  /// this rank's own, told to all in the report.
+  EpochReport run_epoch(double target, std::int64_t hash_every = 0, Request request = Request::none);
 
   [[nodiscard]] const model::Model& model() const noexcept { return model_; }
+  /// Time and step, and the bodies of this machine; after collect() on rank 0 those that were collected too.
   [[nodiscard]] const model::State& state() const noexcept { return state_; }
   [[nodiscard]] const solve::Workspace& workspace() const noexcept { return workspace_; }
   [[nodiscard]] const RunExtremes& extremes() const noexcept { return extremes_; }
@@ -86,31 +73,81 @@ class Simulation {
   /// Island of each body (barriers: no_index), shape [bodies].
   [[nodiscard]] const std::vector<Index>& island_of_body() const noexcept { return island_of_body_; }
 
+  /// Brings the states and contact forces of bodies to rank 0, ascending; without a list those of all bodies.
+  void collect(std::span<const Index> bodies);
+  void collect();
+
+  [[nodiscard]] const World& world() const noexcept { return world_; }
+  [[nodiscard]] int rank() const noexcept { return world_.communicator->rank(); }
+  /// Machine of each body (barriers: no_machine), shape [bodies].
+  [[nodiscard]] const std::vector<MachineIndex>& owner() const noexcept { return owner_; }
+  [[nodiscard]] PlacementLedger& ledger() noexcept { return ledger_; }
+  [[nodiscard]] const PlacementLedger& ledger() const noexcept { return ledger_; }
+  [[nodiscard]] WorldLoad load() const;
+  /// Bodies of this rank's machine, ascending.
+  [[nodiscard]] const std::vector<Index>& own_bodies() const noexcept { return own_bodies_; }
+
+  /// The state of the bodies, which this rank must have, and all that a run needs besides: taken up again by the second
+  /// constructor, on any rank of any world.
+  [[nodiscard]] Bytes piece(std::span<const Index> bodies) const;
+
  private:
   struct Attempt;
+  struct Blank {};
+
+  Simulation(const model::Model& model, solve::KernelChoice kernel, World world, Blank);
 
   enum class Verdict { accept, redo, give_up };
 
   void plan(double target, Attempt& attempt) const;
   void form_islands(const Attempt& attempt);
-  std::vector<solve::IslandReport> advance_islands(const Attempt& attempt, std::int64_t hash_every,
-                                                   EpochReport& report);
-  Verdict guard(Attempt& attempt, const std::vector<solve::IslandReport>& islands, bool may_retry, Fault& fault);
+  void place(const std::vector<Island>& islands);
+  void move_bodies(const std::vector<MachineIndex>& owner);
+  void take_up_solvers(std::vector<Island> islands);
+  void find_own_bodies();
+  RankRecord advance_islands(const Attempt& attempt, std::int64_t hash_every, Request request, EpochReport& report);
+  RankRecord share(const RankRecord& own, std::span<const double> island_seconds);
+  void take_in(int rank, ByteReader& in, std::vector<double>& island_seconds);
+  void share_hashes(EpochReport& report);
+  Verdict guard(Attempt& attempt, const RankRecord& record, bool may_retry, Fault& fault);
   void put_back();
-  void gather(const std::vector<solve::IslandReport>& islands, EpochReport& report) const;
+  void gather(const RankRecord& record, EpochReport& report) const;
   void judge(EpochReport& report);
+  void adopt_machines(const std::vector<Machine>& known);
+  void unpack_run(ByteReader& in);
+  void read_piece(std::span<const std::byte> piece, Bytes& run, std::vector<Index>& held);
+  [[nodiscard]] std::vector<int> learn_holders(const std::vector<Index>& held, Bytes& run);
+  void place_the_homeless();
+  void pack_run(ByteWriter& out) const;
 
-  [[nodiscard]] Fault not_finite_fault(const std::vector<solve::IslandReport>& islands) const;
+  [[nodiscard]] int rank_of(Index body) const;
+  [[nodiscard]] bool is_own(Index body) const { return rank_of(body) == rank(); }
+  [[nodiscard]] solve::CriticalStep smallest_critical_step() const;
+  [[nodiscard]] solve::Diagnostics sum_of_diagnostics() const;
+  [[nodiscard]] static std::vector<double> elements_of(const model::Model& model);
+  [[nodiscard]] Fault not_finite_fault(const RankRecord& record) const;
   [[nodiscard]] Fault collapsed_fault() const;
-  [[nodiscard]] Fault energy_fault(const EpochReport& report) const;
+  [[nodiscard]] Fault energy_fault(const EpochReport& report);
 
   const model::Model& model_;
+  World world_;
   model::State state_;
   model::State backup_;
   solve::Workspace workspace_;
-  std::vector<Island> islands_;
-  std::vector<std::unique_ptr<solve::IslandSolver>> solvers_;  // [islands]
+  std::vector<BodyNotice> notices_;        // [bodies]
+  std::vector<BodyNotice> start_notices_;  // [bodies]: of the epoch's start
+  std::vector<MachineIndex> owner_;        // [bodies]
+  std::vector<Index> own_bodies_;
+  std::vector<bool> arrived_;    // [bodies]: came from elsewhere, so that their forces are to be evaluated
+  std::vector<Island> islands_;  ///< Of all machines
+  std::vector<std::unique_ptr<solve::IslandSolver>> solvers_;  // [islands]: of this machine's; others null
   std::vector<Index> island_of_body_;
+  std::vector<double> island_seconds_;  // [islands]: cost in the last epoch [seconds]
+  PlacementLedger ledger_;
+  WorldLoad load_;
+  Traffic told_;                  ///< Traffic that other ranks know of
+  std::int64_t moved_bytes_{};    ///< Not told yet
+  std::string pending_reason_;    ///< Of the next placement, besides what the islands do
   solve::CriticalStep critical_;  ///< Of the elements in the present state
   double contact_frequency2_{};   ///< Contact's share of omega^2 in the last epoch [1/time^2]
   solve::Diagnostics start_;

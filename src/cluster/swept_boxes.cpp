@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "parallel/parallel.hpp"
-
 namespace fexp::cluster {
 
 namespace {
@@ -14,7 +12,6 @@ namespace {
 constexpr double velocity_margin = 1.25;
 /// Free play, as a part of the body's largest extent: a hundredth keeps bodies apart in the graph until they are close.
 constexpr double free_play = 0.01;
-constexpr Index body_grain = 4;
 
 /// Largest speed that prescribed motion can give a node of the body [length/time].
 double prescribed_speed(const model::Model& model, const model::Body& body) {
@@ -34,54 +31,42 @@ double prescribed_speed(const model::Model& model, const model::Body& body) {
   return std::sqrt(3.0) * largest;
 }
 
-Box node_box(const model::Model& model, const model::State& state, const model::Body& body, double& reach) {
-  Box box;
-  reach = 0.0;
-  for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
-    box.include(state.motion[at(n)].position);
-    reach = std::max(reach, model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)]));
-  }
-  return box;
-}
-
-double largest_extent(const Box& box) {
+double largest_edge(const Box& box) {
   return std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
 }
 
 }  // namespace
 
-std::vector<double> travel_allowance(const model::Model& model, const model::State& state, double dt, Index steps) {
-  std::vector<double> allowance(model.bodies.size(), 0.0);
-  parallel::for_each(model.body_count(), body_grain, [&](Index b) {
-    const model::Body& body = model.bodies[at(b)];
-    if (body.barrier) {
-      return;
-    }
-    double speed2 = 0.0;
-    for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
-      const Vec3d v = state.motion[at(n)].velocity + (0.5 * dt) * state.acceleration[at(n)].linear;
-      speed2 = std::max(speed2, dot(v, v));
-    }
-    const double speed = std::sqrt(speed2) + prescribed_speed(model, body);
-    double reach = 0.0;
-    const double size = largest_extent(node_box(model, state, body, reach));
-    allowance[at(b)] = velocity_margin * speed * dt * static_cast<double>(steps) + free_play * size;
-  });
-  return allowance;
+BodyExtent extent_of(const model::Model& model, const model::State& state, Index body) {
+  const IndexRange nodes = model.bodies[at(body)].nodes;
+  BodyExtent extent;
+  double speed2 = 0.0, acceleration2 = 0.0;
+  for (Index n = nodes.begin; n < nodes.end; ++n) {
+    const model::NodeMotion& motion = state.motion[at(n)];
+    const Vec3d& acceleration = state.acceleration[at(n)].linear;
+    extent.box.include(motion.position);
+    extent.reach = std::max(extent.reach, model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)]));
+    speed2 = std::max(speed2, dot(motion.velocity, motion.velocity));
+    acceleration2 = std::max(acceleration2, dot(acceleration, acceleration));
+  }
+  extent.size = largest_edge(extent.box);
+  extent.speed = std::sqrt(speed2);
+  extent.acceleration = std::sqrt(acceleration2);
+  for (const model::ContactSide& side : state.sides[at(body)]) {
+    extent.box.include(state.motion[at(side.node)].position);
+    extent.box.include(state.motion[at(model.triangle[at(side.element)][0])].position);
+  }
+  return extent;
 }
 
-std::vector<Box> swept_boxes(const model::Model& model, const model::State& state, std::span<const double> allowance) {
-  std::vector<Box> boxes(model.bodies.size());
-  parallel::for_each(model.body_count(), body_grain, [&](Index b) {
-    double reach = 0.0;
-    Box box = node_box(model, state, model.bodies[at(b)], reach);
-    for (const model::ContactSide& side : state.sides[at(b)]) {
-      box.include(state.motion[at(side.node)].position);
-      box.include(state.motion[at(model.triangle[at(side.element)][0])].position);
-    }
-    boxes[at(b)] = box.grown(allowance[at(b)] + reach);
-  });
-  return boxes;
+double travel_allowance(const model::Model& model, Index body, const BodyExtent& extent, double dt, Index steps) {
+  if (model.bodies[at(body)].barrier) {
+    return 0.0;
+  }
+  const double speed = extent.speed + 0.5 * dt * extent.acceleration + prescribed_speed(model, model.bodies[at(body)]);
+  return velocity_margin * speed * dt * static_cast<double>(steps) + free_play * extent.size;
 }
+
+Box swept_box(const BodyExtent& extent, double allowance) { return extent.box.grown(allowance + extent.reach); }
 
 }  // namespace fexp::cluster

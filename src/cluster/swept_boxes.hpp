@@ -10,16 +10,26 @@
 
 namespace fexp::cluster {
 
-/// How far each body's nodes are allowed to move in `steps` steps of `dt` before the epoch has to be redone [length],
-/// shape [bodies]: a bound from the velocities of the first half step, with a margin, plus a small part of the body's
-/// size so that bodies at rest may start to move. A single step never needs more. Barriers get zero.
-[[nodiscard]] std::vector<double> travel_allowance(const model::Model& model, const model::State& state, double dt,
-                                                   Index steps);
+/// Where a body is and how fast it may leave: all that the interaction graph needs to know of it.
+struct BodyExtent {
+  /// The nodes, and what the body's remembered sides name, so that these are in one island however deep a node has come
+  /// through [length].
+  Box box;
+  double size{};          ///< Largest edge of the nodes' box [length]
+  double reach{};         ///< Largest half thickness with the margin within which contact remembers sides [length]
+  double speed{};         ///< Largest of the nodes [length/time]
+  double acceleration{};  ///< Largest of the nodes [length/time^2]
+};
 
-/// Each body's present box grown by its allowance, its half thickness and the margin within which contact remembers
-/// sides [length], shape [bodies]. A box reaches to every body that the body's remembered sides name, so that these are
-/// in one island however deep a node has come through.
-[[nodiscard]] std::vector<Box> swept_boxes(const model::Model& model, const model::State& state,
-                                           std::span<const double> allowance);
+[[nodiscard]] BodyExtent extent_of(const model::Model& model, const model::State& state, Index body);
+
+/// How far the body's nodes are allowed to move in `steps` steps of `dt` before the epoch has to be redone [length]: a
+/// bound from the velocities of the first half step, with a margin, plus a small part of the body's size so that bodies
+/// at rest may start to move. A single step never needs more. Barriers get zero.
+[[nodiscard]] double travel_allowance(const model::Model& model, Index body, const BodyExtent& extent, double dt,
+                                      Index steps);
+
+/// The body's present box grown by its allowance and the reach of contact [length].
+[[nodiscard]] Box swept_box(const BodyExtent& extent, double allowance);
 
 }  // namespace fexp::cluster

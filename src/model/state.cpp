@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/state.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstring>
 #include <utility>
 
@@ -110,6 +112,19 @@ State initial_state(const Model& model) {
   state.sides.resize(model.bodies.size());
   state.ledger.resize(model.bodies.size());
   return state;
+}
+
+void copy_body(const Model& model, const State& from, Index body, State& to) {
+  const Body& owner = model.bodies[at(body)];
+  const auto copy = [](const auto& source, auto& target, std::size_t begin, std::size_t end) {
+    std::copy(source.begin() + static_cast<std::ptrdiff_t>(begin), source.begin() + static_cast<std::ptrdiff_t>(end),
+              target.begin() + static_cast<std::ptrdiff_t>(begin));
+  };
+  copy(from.motion, to.motion, at(owner.nodes.begin), at(owner.nodes.end));
+  copy(from.acceleration, to.acceleration, at(owner.nodes.begin), at(owner.nodes.end));
+  copy(from.history, to.history, row_offset(owner.blocks.begin, 0), row_offset(owner.blocks.end, 0));
+  to.sides[at(body)] = from.sides[at(body)];
+  to.ledger[at(body)] = from.ledger[at(body)];
 }
 
 // Order: motion of the nodes (x, v, omega), their accelerations (a, alpha), element rows block by block (used lanes

@@ -78,6 +78,9 @@ struct State {
 /// stress; accelerations are left zero.
 [[nodiscard]] State initial_state(const Model& model);
 
+/// Copies one body's part of a state of the same model.
+void copy_body(const Model& model, const State& from, Index body, State& to);
+
 /// Appends the canonical little-endian bytes of one body's state: the one form used for hashes, checkpoints and the
 /// wire. Padding lanes and struct padding are not part of it.
 void append_body_bytes(const Model& model, const State& state, Index body, std::vector<std::byte>& bytes);

@@ -38,13 +38,7 @@ double internal_energy(const model::Model& model, const model::State& state, Ind
   return sum;
 }
 
-Diagnostics plus(Diagnostics a, const Diagnostics& b) noexcept {
-  a.energies += b.energies;
-  a.momenta += b.momenta;
-  return a;
-}
-
-CriticalStep smaller(const CriticalStep& a, const CriticalStep& b) noexcept { return b.step < a.step ? b : a; }
+Diagnostics plus(Diagnostics a, const Diagnostics& b) noexcept { return a += b; }
 
 /// The smallest critical step of elements [begin, end).
 CriticalStep smallest_step(const model::Model& model, const model::State& state, Index begin, Index end) {
@@ -84,6 +78,12 @@ Momenta& Momenta::operator+=(const Momenta& other) noexcept {
   return *this;
 }
 
+Diagnostics& Diagnostics::operator+=(const Diagnostics& other) noexcept {
+  energies += other.energies;
+  momenta += other.momenta;
+  return *this;
+}
+
 Diagnostics body_diagnostics(const model::Model& model, const model::State& state, Index body) {
   const model::Body& owner = model.bodies[at(body)];
   const model::BodyLedger& ledger = state.ledger[at(body)];
@@ -103,14 +103,16 @@ Diagnostics body_diagnostics(const model::Model& model, const model::State& stat
 }
 
 Diagnostics diagnostics(const model::Model& model, const model::State& state) {
-  return parallel::ordered_fold(
-      {0, model.body_count()}, 1, Diagnostics{},
-      [&](Index body, Index) { return body_diagnostics(model, state, body); }, plus);
+  Diagnostics sum;
+  for (Index body = 0; body < model.body_count(); ++body) {
+    sum += body_diagnostics(model, state, body);
+  }
+  return sum;
 }
 
-CriticalStep critical_step(const model::Model& model, const model::State& state) {
+CriticalStep body_critical_step(const model::Model& model, const model::State& state, Index body) {
   return parallel::ordered_fold(
-      {0, model.element_count()}, piece, CriticalStep{},
+      model.bodies[at(body)].elements, piece, CriticalStep{},
       [&](Index begin, Index end) { return smallest_step(model, state, begin, end); }, smaller);
 }
 

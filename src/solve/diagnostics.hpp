@@ -35,6 +35,8 @@ struct Momenta {
 struct Diagnostics {
   Energies energies;
   Momenta momenta;
+
+  Diagnostics& operator+=(const Diagnostics& other) noexcept;
 };
 
 /// Diagnostics of one body, summed in fixed pieces so that no number of threads changes a bit.
@@ -49,7 +51,11 @@ struct CriticalStep {
   Index element{no_index};
 };
 
-/// Critical step over all elements in the current geometry.
-[[nodiscard]] CriticalStep critical_step(const model::Model& model, const model::State& state);
+[[nodiscard]] constexpr CriticalStep smaller(const CriticalStep& a, const CriticalStep& b) noexcept {
+  return b.step < a.step ? b : a;
+}
+
+/// Critical step over one body's elements in the current geometry.
+[[nodiscard]] CriticalStep body_critical_step(const model::Model& model, const model::State& state, Index body);
 
 }  // namespace fexp::solve

@@ -21,6 +21,23 @@ model::Plate plate(double side, int cells) {
   return p;
 }
 
+std::vector<double> travel_allowance(const model::Model& model, const model::State& state, double dt, Index steps) {
+  std::vector<double> allowance;
+  for (Index b = 0; b < model.body_count(); ++b) {
+    allowance.push_back(travel_allowance(model, b, extent_of(model, state, b), dt, steps));
+  }
+  return allowance;
+}
+
+std::vector<Box> swept_boxes(const model::Model& model, const model::State& state,
+                             const std::vector<double>& allowance) {
+  std::vector<Box> boxes;
+  for (Index b = 0; b < model.body_count(); ++b) {
+    boxes.push_back(swept_box(extent_of(model, state, b), allowance[at(b)]));
+  }
+  return boxes;
+}
+
 TEST(swept_boxes, a_box_is_that_of_the_nodes_and_the_allowance_and_the_reach_of_contact) {
   auto d = test::description(rubber, 0.02);
   test::add_body(d, "low", plate(1.0, 2));

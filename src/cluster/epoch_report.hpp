@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "cluster/fault.hpp"
+#include "solve/diagnostics.hpp"
+#include "solve/island_solver.hpp"
+
+namespace fexp::cluster {
+
+/// What a rank asks all others for at the end of an epoch; the largest counts.
+enum class Request : std::int32_t {
+  none,
+  reform,        ///< End this world, because other machines are to make the next one
+  stop,          ///< End the run here
+  output_error,  ///< End the run: its files cannot be written
+};
+
+/// What one epoch did. The same on every rank, but for the hashes.
+struct EpochReport {
+  double dt{};  ///< [time]
+  Index steps{};
+  Index islands{};
+  Index largest_island_elements{};
+  Index rollbacks{};     ///< Times the epoch was put back and redone
+  Index active_pairs{};  ///< Contacts at the end
+  Index candidates{};
+  Index searches{};  ///< Contact searches during the epoch
+  double deepest{};  ///< Deepest penetration over contact distance [-]
+  Index deepest_node{no_index};
+  Index deepest_element{no_index};
+  solve::CriticalStep critical;    ///< Of the elements, at the end
+  solve::Diagnostics diagnostics;  ///< At the end
+  double energy_error{};           ///< Relative imbalance at the end [-]
+  double linear_momentum_error{};  ///< Relative to the sum of moduli [-]
+  double angular_momentum_error{};
+  std::vector<solve::HashRecord> hashes;  ///< By step, then body; on rank 0 only.
+  Fault fault;
+  Request request{Request::none};  ///< Of any rank
+};
+
+/// Largest values over the run.
+struct RunExtremes {
+  double energy_error{};
+  double linear_momentum_error{};
+  double angular_momentum_error{};
+  double smallest_dt{HUGE_VAL};
+  double largest_dt{};
+  Index fewest_islands{};
+  Index most_islands{};
+  Index most_active_pairs{};
+  double deepest{};
+  std::int64_t epochs{};
+  std::int64_t rollbacks{};
+  std::int64_t searches{};
+
+  void add(const EpochReport& report);
+};
+
+}  // namespace fexp::cluster

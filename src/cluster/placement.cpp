@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cluster/placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <queue>
+#include <utility>
+
+namespace fexp::cluster {
+
+namespace {
+
+/// measured_cost leaves islands where they are while the busiest machine is no more than this above the mean.
+constexpr double tolerated_imbalance = 0.1;
+/// One more machine that saves less than this part of the time is not worth having.
+constexpr double worth_having = 0.01;
+/// Islands that balance() moves at most, for each machine.
+constexpr std::size_t rounds_per_machine = 4;
+
+/// Loads of the machines, and the least loaded one in logarithmic time. Loads are divided by speeds.
+class Loads {
+ public:
+  explicit Loads(std::span<const Machine> machines) : machines_(machines), load_(machines.size(), 0.0) {
+    for (std::size_t m = 0; m < machines_.size(); ++m) {
+      enter(static_cast<MachineIndex>(m));
+    }
+  }
+
+  void add(MachineIndex machine, double weight) {
+    load_[index(machine)] += weight;
+    enter(machine);
+  }
+  [[nodiscard]] double of(MachineIndex machine) const { return load_[index(machine)] / speed(machine); }
+  [[nodiscard]] double with(MachineIndex machine, double weight) const {
+    return (load_[index(machine)] + weight) / speed(machine);
+  }
+  /// The present machine with the least load; ties go to the lowest.
+  [[nodiscard]] MachineIndex least() {
+    while (queue_.top().first != of(queue_.top().second)) {
+      queue_.pop();  // Its load has changed since.
+    }
+    return queue_.top().second;
+  }
+  /// The present machine with the most load; ties go to the lowest.
+  [[nodiscard]] MachineIndex most() const {
+    MachineIndex found = no_machine;
+    for (std::size_t m = 0; m < load_.size(); ++m) {
+      const auto machine = static_cast<MachineIndex>(m);
+      if (present(machine) && (found == no_machine || of(machine) > of(found))) {
+        found = machine;
+      }
+    }
+    return found;
+  }
+  [[nodiscard]] bool present(MachineIndex machine) const {
+    return machine != no_machine && machines_[index(machine)].present();
+  }
+
+ private:
+  using Entry = std::pair<double, MachineIndex>;
+  static std::size_t index(MachineIndex machine) { return static_cast<std::size_t>(machine); }
+  [[nodiscard]] double speed(MachineIndex machine) const { return machines_[index(machine)].speed; }
+  void enter(MachineIndex machine) {
+    if (present(machine)) {
+      queue_.emplace(of(machine), machine);
+    }
+  }
+
+  std::span<const Machine> machines_;
+  std::vector<double> load_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+};
+
+/// How an island came about.
+enum class Origin { same, merged, piece, homeless };
+
+struct Candidate {
+  std::size_t island{};
+  double weight{};
+  Origin origin{Origin::same};
+  MachineIndex host{no_machine};  ///< Where it is or gathers
+};
+
+class Placer {
+ public:
+  explicit Placer(const PlacementTask& task) : task_(task), loads_(task.machines) {
+    placement_.owner.assign(task.owner.begin(), task.owner.end());
+    reason_.resize(task.owner.size());
+    find_candidates();
+  }
+
+  Placement place() {
+    // Loads first, as far as they are settled, so that what is looked for a place sees them.
+    for (const Candidate& c : candidates_) {
+      if (c.origin != Origin::homeless) {
+        settle(c, c.host, c.origin == Origin::merged ? MoveReason::merge : MoveReason::split);
+      }
+    }
+    std::vector<bool> first_stays(task_.machines.size(), false);
+    for (const Candidate& c : candidates_) {
+      if (c.origin == Origin::piece) {
+        place_piece(c, first_stays);
+      }
+    }
+    const bool start = task_.before.empty();
+    for (const Candidate& c : candidates_) {
+      if (c.origin == Origin::homeless) {
+        settle(c, loads_.least(), start ? MoveReason::start : MoveReason::machine_left);
+      }
+    }
+    if (task_.rule == PlacementRule::measured_cost) {
+      balance();
+    }
+    for (std::size_t b = 0; b < placement_.owner.size(); ++b) {
+      if (placement_.owner[b] != task_.owner[b]) {
+        placement_.moves.push_back({static_cast<Index>(b), task_.owner[b], placement_.owner[b], reason_[b]});
+      }
+    }
+    return std::move(placement_);
+  }
+
+ private:
+  /// Islands in the order of the rule: weight descending, then lowest body.
+  void find_candidates() {
+    std::vector<std::size_t> island_before(task_.owner.size(), none);
+    for (std::size_t i = 0; i < task_.before.size(); ++i) {
+      for (const Index body : task_.before[i].bodies) {
+        island_before[at(body)] = i;
+      }
+    }
+    for (std::size_t i = 0; i < task_.islands.size(); ++i) {
+      candidates_.push_back(candidate(i, island_before));
+    }
+    std::stable_sort(candidates_.begin(), candidates_.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.weight > b.weight; });
+  }
+
+  [[nodiscard]] Candidate candidate(std::size_t i, const std::vector<std::size_t>& island_before) const {
+    const std::vector<Index>& bodies = task_.islands[i].bodies;
+    Candidate c;
+    c.island = i;
+    std::vector<std::pair<MachineIndex, double>> held;  // few: an island's bodies come from few machines
+    bool one = true;
+    for (const Index body : bodies) {
+      c.weight += task_.weight[at(body)];
+      one = one && island_before[at(body)] == island_before[at(bodies.front())];
+      const MachineIndex owner = task_.owner[at(body)];
+      if (loads_.present(owner)) {
+        const auto found = std::ranges::find(held, owner, &std::pair<MachineIndex, double>::first);
+        (found == held.end() ? held.emplace_back(owner, 0.0) : *found).second += task_.weight[at(body)];
+      }
+    }
+    std::sort(held.begin(), held.end());
+    double most = -1.0;
+    for (const auto& [machine, weight] : held) {
+      if (weight > most) {
+        most = weight;
+        c.host = machine;
+      }
+    }
+    const std::size_t before = island_before[at(bodies.front())];
+    if (c.host == no_machine) {
+      c.origin = Origin::homeless;
+    } else if (!one) {
+      c.origin = Origin::merged;
+    } else {
+      c.origin = before != none && task_.before[before].bodies == bodies ? Origin::same : Origin::piece;
+    }
+    return c;
+  }
+
+  /// Moves the island's bodies to a machine and counts its weight there.
+  void settle(const Candidate& c, MachineIndex machine, MoveReason reason) {
+    for (const Index body : task_.islands[c.island].bodies) {
+      const MachineIndex from = task_.owner[at(body)];
+      reason_[at(body)] = from != no_machine && !loads_.present(from) ? MoveReason::machine_left : reason;
+      placement_.owner[at(body)] = machine;
+    }
+    loads_.add(machine, c.weight);
+  }
+
+  void place_piece(const Candidate& c, std::vector<bool>& first_stays) {
+    const auto host = static_cast<std::size_t>(c.host);
+    if (!first_stays[host]) {
+      first_stays[host] = true;
+      return;
+    }
+    const MachineIndex target = loads_.least();
+    if (loads_.with(target, c.weight) < loads_.of(c.host)) {
+      loads_.add(c.host, -c.weight);
+      settle(c, target, MoveReason::split);
+    }
+  }
+
+  /// Takes islands from the busiest machine to the least busy one while that helps.
+  void balance() {
+    std::vector<std::vector<const Candidate*>> held(task_.machines.size());
+    double sum = 0.0, speed = 0.0;
+    for (const Candidate& c : candidates_) {
+      held[static_cast<std::size_t>(owner_of(c))].push_back(&c);
+      sum += c.weight;
+    }
+    for (const Machine& machine : task_.machines) {
+      speed += machine.present() ? machine.speed : 0.0;
+    }
+    const double tolerated = (1.0 + tolerated_imbalance) * sum / speed;
+    for (std::size_t round = 0; round < rounds_per_machine * task_.machines.size(); ++round) {
+      const MachineIndex busiest = loads_.most(), target = loads_.least();
+      const double high = loads_.of(busiest);
+      auto& islands = held[static_cast<std::size_t>(busiest)];
+      // The island that leaves the two machines most alike.
+      auto best = islands.end();
+      double best_high = (1.0 - worth_having) * high;
+      for (auto c = islands.begin(); high > tolerated && c != islands.end(); ++c) {
+        const double after = std::max(loads_.with(target, (*c)->weight), loads_.with(busiest, -(*c)->weight));
+        if (after < best_high) {
+          best_high = after;
+          best = c;
+        }
+      }
+      if (best == islands.end()) {
+        return;
+      }
+      loads_.add(busiest, -(*best)->weight);
+      settle(**best, target, MoveReason::balance);
+      held[static_cast<std::size_t>(target)].push_back(*best);
+      islands.erase(best);
+    }
+  }
+
+  [[nodiscard]] MachineIndex owner_of(const Candidate& c) const {
+    return placement_.owner[at(task_.islands[c.island].bodies.front())];
+  }
+
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  const PlacementTask& task_;
+  Loads loads_;
+  std::vector<Candidate> candidates_;
+  std::vector<MoveReason> reason_;  // [bodies]: of the last change
+  Placement placement_;
+};
+
+}  // namespace
+
+Placement place_islands(const PlacementTask& task) { return Placer(task).place(); }
+
+BalanceReport judge_balance(std::span<const double> cost, std::span<const MachineIndex> owner,
+                            std::span<const Machine> machines) {
+  BalanceReport report;
+  std::vector<double> busy(machines.size(), 0.0);
+  double sum = 0.0, largest = 0.0, speed = 0.0;
+  for (std::size_t i = 0; i < cost.size(); ++i) {
+    sum += cost[i];
+    largest = std::max(largest, cost[i]);
+    busy[static_cast<std::size_t>(owner[i])] += cost[i];
+  }
+  int present = 0;
+  double busiest = 0.0;
+  for (std::size_t m = 0; m < machines.size(); ++m) {
+    if (machines[m].present()) {
+      ++present;
+      speed += machines[m].speed;
+      busiest = std::max(busiest, busy[m] / machines[m].speed);
+    }
+  }
+  if (!(sum > 0.0) || present == 0) {
+    return report;
+  }
+  const double mean_speed = speed / present;
+  report.largest_share = largest / sum;
+  report.imbalance = busiest / (sum / speed) - 1.0;
+  // Largest first on to the least loaded of n machines of the mean speed: within a third of the best [GRA69].
+  std::vector<double> sorted(cost.begin(), cost.end());
+  std::sort(sorted.begin(), sorted.end(), std::greater<>());
+  const auto time_with = [&](int count) {
+    std::priority_queue<double, std::vector<double>, std::greater<>> loads;
+    for (int m = 0; m < count; ++m) {
+      loads.push(0.0);
+    }
+    double longest = 0.0;
+    for (const double one : sorted) {
+      const double load = loads.top() + one / mean_speed;
+      loads.pop();
+      loads.push(load);
+      longest = std::max(longest, load);
+    }
+    return longest;
+  };
+  report.with_one_more = time_with(present + 1) / busiest;
+  // No number of machines is faster than the largest island alone.
+  report.useful_machines = std::max(1, static_cast<int>(std::ceil((1.0 - worth_having) * sum / largest)));
+  return report;
+}
+
+}  // namespace fexp::cluster

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <thread>
+
+#include "cluster/shipment.hpp"
+#include "cluster/simulation.hpp"
+#include "parallel/parallel.hpp"
+
+namespace fexp::cluster {
+
+namespace {
+
+std::string counted(std::size_t count, const char* one) {
+  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+}
+
+/// "2 islands merged, 1 split off" and the like.
+std::string reason_of(const std::vector<Move>& moves, const std::vector<Island>& before,
+                      const std::vector<Island>& after) {
+  if (before.empty()) {
+    return "start";
+  }
+  std::string text = before.size() == after.size()
+                         ? counted(after.size(), "island")
+                         : fmt::format("{} become {}", counted(before.size(), "island"), after.size());
+  std::vector<std::pair<MoveReason, std::size_t>> counts;
+  for (const Move& move : moves) {
+    const auto found = std::ranges::find(counts, move.reason, &std::pair<MoveReason, std::size_t>::first);
+    ++(found == counts.end() ? counts.emplace_back(move.reason, 0) : *found).second;
+  }
+  for (const auto& [reason, count] : counts) {
+    text += fmt::format(", {} moved: {}", counted(count, "body"), text_of(reason));
+  }
+  return text;
+}
+
+bool same_bodies(const std::vector<Island>& a, const std::vector<Island>& b) {
+  return std::ranges::equal(a, b, [](const Island& x, const Island& y) { return x.bodies == y.bodies; });
+}
+
+}  // namespace
+
+World World::alone() {
+  char host[256] = "localhost";
+  gethostname(host, sizeof(host) - 1);
+  World world;
+  world.communicator = std::make_shared<LoneCommunicator>();
+  Machine machine;
+  machine.name = host;
+  machine.rank = 0;
+  machine.threads = parallel::thread_count();
+  machine.native_threads = static_cast<int>(std::thread::hardware_concurrency());
+  world.machines.push_back(machine);
+  return world;
+}
+
+int Simulation::rank_of(Index body) const {
+  const MachineIndex owner = owner_[at(body)];
+  return owner == no_machine ? -1 : world_.machines[static_cast<std::size_t>(owner)].rank;
+}
+
+/// Places the islands when they are others than before, or when their machines have changed.
+void Simulation::place(const std::vector<Island>& islands) {
+  const bool measured = world_.rule == PlacementRule::measured_cost && load_.epochs > 0;
+  if (same_bodies(islands, islands_) && pending_reason_.empty() && !measured) {
+    return;
+  }
+  std::vector<double> weight = elements_of(model_);
+  if (measured) {
+    // What an island took is spread over its bodies by their elements, and counted as work at the speed of its machine.
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+      double elements = 0.0;
+      for (const Index body : islands_[i].bodies) {
+        elements += weight[at(body)];
+      }
+      const MachineIndex owner = owner_[at(islands_[i].bodies.front())];
+      const double work = island_seconds_[i] * world_.machines[static_cast<std::size_t>(owner)].speed;
+      for (const Index body : islands_[i].bodies) {
+        weight[at(body)] *= work / elements;
+      }
+    }
+  }
+  const Placement placement = place_islands({world_.rule, islands, islands_, owner_, weight, world_.machines});
+  const bool changed = !same_bodies(islands, islands_) || !placement.moves.empty() || !pending_reason_.empty();
+  if (changed) {
+    std::string reason = reason_of(placement.moves, islands_, islands);
+    if (!pending_reason_.empty()) {
+      reason = pending_reason_ + "; " + reason;
+      pending_reason_.clear();
+    }
+    ledger_.note(model_, state_.step, state_.time, placement, world_.machines, std::move(reason));
+  }
+  if (!placement.moves.empty()) {
+    move_bodies(placement.owner);
+  }
+}
+
+/// Sends bodies to their new machines.
+void Simulation::move_bodies(const std::vector<MachineIndex>& owner) {
+  const std::vector<MachineIndex> before = std::exchange(owner_, owner);
+  const auto rank_at = [&](MachineIndex machine) { return world_.machines[static_cast<std::size_t>(machine)].rank; };
+  std::vector<Shipment> shipments;
+  for (Index b = 0; b < model_.body_count(); ++b) {
+    const MachineIndex from = before[at(b)], to = owner_[at(b)];
+    if (from != to && from != no_machine) {
+      shipments.push_back({b, rank_at(from), rank_at(to)});
+      arrived_[at(b)] = arrived_[at(b)] || rank_at(to) == rank();
+    }
+  }
+  moved_bytes_ += ship_bodies(*world_.communicator, model_, shipments, state_);
+  find_own_bodies();
+}
+
+void Simulation::find_own_bodies() {
+  own_bodies_.clear();
+  for (Index b = 0; b < model_.body_count(); ++b) {
+    if (is_own(b)) {
+      own_bodies_.push_back(b);
+    }
+  }
+}
+
+/// Keeps the solver of every island of this machine that is still the same, makes the others, and has the forces of
+/// bodies that came from elsewhere evaluated.
+void Simulation::take_up_solvers(std::vector<Island> islands) {
+  find_own_bodies();
+  std::vector<std::unique_ptr<solve::IslandSolver>> solvers(islands.size());
+  std::vector<double> seconds(islands.size(), 0.0);
+  std::vector<Index> fresh;
+  // Both lists are in ascending order of their islands' lowest bodies.
+  std::size_t old = 0;
+  for (std::size_t i = 0; i < islands.size(); ++i) {
+    const std::vector<Index>& bodies = islands[i].bodies;
+    while (old < islands_.size() && islands_[old].bodies.front() < bodies.front()) {
+      ++old;
+    }
+    const bool same = old < islands_.size() && islands_[old] == islands[i];
+    if (same) {
+      seconds[i] = island_seconds_[old];
+    }
+    if (!is_own(bodies.front())) {
+      continue;
+    }
+    const bool stayed = std::ranges::none_of(bodies, [&](Index body) { return arrived_[at(body)]; });
+    if (same && stayed && solvers_[old]) {
+      solvers[i] = std::move(solvers_[old]);
+    } else {
+      fresh.push_back(static_cast<Index>(i));
+    }
+  }
+  islands_ = std::move(islands);
+  solvers_ = std::move(solvers);
+  island_seconds_ = std::move(seconds);
+  parallel::for_each(static_cast<Index>(fresh.size()), 1, [&](Index k) {
+    const std::size_t i = at(fresh[at(k)]);
+    solvers_[i] = std::make_unique<solve::IslandSolver>();
+    solvers_[i]->assign(model_, state_, islands_[i].bodies, islands_[i].barriers);
+    if (std::ranges::any_of(islands_[i].bodies, [&](Index body) { return arrived_[at(body)]; })) {
+      solvers_[i]->evaluate(model_, state_, workspace_);
+    }
+  });
+  arrived_.assign(model_.bodies.size(), false);
+  island_of_body_.assign(model_.bodies.size(), no_index);
+  for (std::size_t i = 0; i < islands_.size(); ++i) {
+    for (const Index body : islands_[i].bodies) {
+      island_of_body_[at(body)] = static_cast<Index>(i);
+    }
+  }
+}
+
+/// Tells all ranks this rank's record, the cost of its islands, and notices and plane forces of its bodies, in one
+/// message; returns what all records come to.
+RankRecord Simulation::share(const RankRecord& own, std::span<const double> island_seconds) {
+  const std::size_t planes = model_.planes.size();
+  const std::size_t body_bytes = sizeof(BodyNotice) + planes * sizeof(Vec3d);
+  std::vector<std::size_t> sizes(static_cast<std::size_t>(world_.communicator->size()), sizeof(RankRecord));
+  for (const Island& island : islands_) {
+    sizes[static_cast<std::size_t>(rank_of(island.bodies.front()))] +=
+        sizeof(double) + island.bodies.size() * body_bytes;
+  }
+  parallel::for_each(static_cast<Index>(own_bodies_.size()), 1, [&](Index k) {
+    notices_[at(own_bodies_[at(k)])] = notice_of(model_, state_, own_bodies_[at(k)]);
+  });
+  RankRecord record = own;
+  const Traffic& traffic = world_.communicator->traffic();
+  record.moved_bytes = std::exchange(moved_bytes_, 0);
+  record.messages = traffic.messages - told_.messages;
+  record.message_bytes = traffic.bytes - told_.bytes;
+  record.waiting_seconds = traffic.seconds;
+  told_ = traffic;
+  ByteWriter out;
+  out.value(record);
+  for (std::size_t i = 0; i < islands_.size(); ++i) {
+    if (is_own(islands_[i].bodies.front())) {
+      out.value(island_seconds[i]);
+      for (const Index body : islands_[i].bodies) {
+        out.value(notices_[at(body)]);
+        for (const Vec3d& force : workspace_.actions[at(body)].plane_force) {
+          out.value(force);
+        }
+      }
+    }
+  }
+  const Bytes all = world_.communicator->all_gather(out.bytes(), sizes);
+  RankRecord sum;
+  std::size_t offset = 0;
+  for (int r = 0; r < world_.communicator->size(); ++r) {
+    const std::size_t size = sizes[static_cast<std::size_t>(r)];
+    ByteReader in(std::span<const std::byte>(all).subspan(offset, size));
+    const auto one = in.value<RankRecord>();
+    sum.add(one);
+    take_in(r, in, island_seconds_);
+    for (std::size_t m = 0; m < world_.machines.size() && m < load_.busy_seconds.size(); ++m) {
+      load_.busy_seconds[m] += world_.machines[m].rank == r ? one.busy_seconds : 0.0;
+    }
+    offset += size;
+  }
+  ledger_.add_bytes(sum.moved_bytes);
+  load_.messages += sum.messages;
+  load_.message_bytes += sum.message_bytes;
+  load_.waiting_seconds = sum.waiting_seconds;
+  return sum;
+}
+
+/// Notices and plane forces of the bodies of one rank.
+void Simulation::take_in(int rank, ByteReader& in, std::vector<double>& island_seconds) {
+  for (std::size_t i = 0; i < islands_.size(); ++i) {
+    if (rank_of(islands_[i].bodies.front()) != rank) {
+      continue;
+    }
+    island_seconds[i] = in.value<double>();
+    for (const Index body : islands_[i].bodies) {
+      notices_[at(body)] = in.value<BodyNotice>();
+      for (Vec3d& force : workspace_.actions[at(body)].plane_force) {
+        force = in.value<Vec3d>();
+      }
+    }
+  }
+}
+
+/// Brings the hashes of all ranks to all ranks, in order.
+void Simulation::share_hashes(EpochReport& report) {
+  const std::vector<Bytes> all =
+      world_.communicator->all_gather(std::as_bytes(std::span<const solve::HashRecord>(report.hashes)));
+  report.hashes.clear();
+  for (const Bytes& bytes : all) {
+    const std::size_t before = report.hashes.size();
+    report.hashes.resize(before + bytes.size() / sizeof(solve::HashRecord));
+    if (!bytes.empty()) {
+      std::memcpy(static_cast<void*>(report.hashes.data() + before), bytes.data(), bytes.size());
+    }
+  }
+  std::sort(report.hashes.begin(), report.hashes.end(), [](const solve::HashRecord& a, const solve::HashRecord& b) {
+    return a.step != b.step ? a.step < b.step : a.body < b.body;
+  });
+}
+
+void Simulation::collect(std::span<const Index> bodies) {
+  std::vector<Shipment> shipments;
+  for (const Index body : bodies) {
+    if (const int from = rank_of(body); from > 0) {
+      shipments.push_back({body, from, 0});
+    }
+  }
+  if (!shipments.empty()) {
+    ship_bodies(*world_.communicator, model_, shipments, state_, &workspace_.contact.force);
+  }
+}
+
+void Simulation::collect() {
+  std::vector<Index> all(model_.bodies.size());
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    all[b] = static_cast<Index>(b);
+  }
+  collect(all);
+}
+
+WorldLoad Simulation::load() const {
+  WorldLoad load = load_;
+  std::vector<MachineIndex> owner;
+  for (const Island& island : islands_) {
+    owner.push_back(owner_[at(island.bodies.front())]);
+  }
+  load.balance = judge_balance(island_seconds_, owner, world_.machines);
+  return load;
+}
+
+}  // namespace fexp::cluster

@@ -106,18 +106,23 @@ BodySums sums_of(const cluster::Simulation& simulation, const model::Body& body)
   return sums;
 }
 
+io::CsvWriter open(std::filesystem::path path, std::vector<Column> columns, const OutputMark* mark) {
+  if (mark == nullptr) {
+    return {std::move(path), std::move(columns)};
+  }
+  const std::uint64_t bytes = mark->bytes_of(path);
+  return io::CsvWriter::resume(std::move(path), std::move(columns), bytes);
+}
+
 }  // namespace
 
-Histories::Histories(const io::RunDirectory& directory, const Case& loaded)
+Histories::Histories(const io::RunDirectory& directory, const Case& loaded, const OutputMark* mark)
     : model_(loaded.model),
-      energies_(directory.history("energies"), energy_columns(loaded.deck.units)),
-      momenta_(directory.history("momenta"), momenta_columns(loaded.deck.units)),
-      steps_(directory.history("steps"), steps_columns(loaded.deck.units)) {
+      energies_(open(directory.history("energies"), energy_columns(loaded.deck.units), mark)),
+      momenta_(open(directory.history("momenta"), momenta_columns(loaded.deck.units), mark)),
+      steps_(open(directory.history("steps"), steps_columns(loaded.deck.units), mark)) {
   const io::UnitNames& units = loaded.deck.units;
   const io::OutputSettings& output = loaded.deck.output;
-  if (!model_.planes.empty()) {
-    planes_.emplace(directory.history("planes"), planes_columns(units, model_));
-  }
   for (const model::NamedNodes& set : model_.node_sets) {
     if (std::ranges::find(output.nodes, set.name) != output.nodes.end()) {
       sets_.push_back(&set);
@@ -128,11 +133,19 @@ Histories::Histories(const io::RunDirectory& directory, const Case& loaded)
       chosen_.push_back(b);
     }
   }
+  if (!model_.planes.empty()) {
+    planes_ = open(directory.history("planes"), planes_columns(units, model_), mark);
+  }
   if (!sets_.empty()) {
-    nodes_.emplace(directory.history("nodes"), nodes_columns(units));
+    nodes_ = open(directory.history("nodes"), nodes_columns(units), mark);
   }
   if (!chosen_.empty()) {
-    bodies_.emplace(directory.history("bodies"), bodies_columns(units));
+    bodies_ = open(directory.history("bodies"), bodies_columns(units), mark);
+  }
+  if (mark != nullptr) {
+    searches_ = mark->searches;
+    rollbacks_ = mark->rollbacks;
+    deepest_ = mark->deepest;
   }
 }
 
@@ -242,6 +255,21 @@ void Histories::flush() {
   for (io::CsvWriter* file : files()) {
     file->flush();
   }
+}
+
+void Histories::sync() {
+  for (io::CsvWriter* file : files()) {
+    file->sync();
+  }
+}
+
+void Histories::mark(OutputMark& mark) {
+  for (const io::CsvWriter* file : files()) {
+    mark.note(file->path(), file->bytes());
+  }
+  mark.searches = searches_;
+  mark.rollbacks = rollbacks_;
+  mark.deepest = deepest_;
 }
 
 void Histories::close() {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/load.hpp"
+#include "app/output_mark.hpp"
 #include "cluster/simulation.hpp"
 #include "io/history.hpp"
 #include "io/run_directory.hpp"
@@ -16,13 +17,18 @@ namespace fexp::app {
 /// rigid planes, motions of nodes and of bodies. Every row begins with step and time.
 class Histories {
  public:
-  Histories(const io::RunDirectory& directory, const Case& loaded);
+  /// Creates the files, or goes on where `mark` says.
+  Histories(const io::RunDirectory& directory, const Case& loaded, const OutputMark* mark = nullptr);
 
   /// Takes note of what an epoch did; the next row of steps.csv tells of all epochs since the row before.
   void add(const cluster::EpochReport& report);
   /// One row (or one for each node and body) of the present state in every file.
   void write(const cluster::Simulation& simulation, const cluster::EpochReport& report);
   void flush();
+  /// Puts all rows so far on the disk.
+  void sync();
+  /// Notes how far the files have come; after flush().
+  void mark(OutputMark& mark);
   void close();
 
  private:

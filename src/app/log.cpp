@@ -21,7 +21,8 @@ namespace {
 
 }  // namespace
 
-Log::Log(std::filesystem::path path) : path_(std::move(path)), file_(std::fopen(path_.c_str(), "we")) {
+Log::Log(std::filesystem::path path, Begin begin)
+    : path_(std::move(path)), file_(std::fopen(path_.c_str(), begin == Begin::anew ? "we" : "ae")) {
   if (!file_) {
     fail(path_);
   }

@@ -11,7 +11,8 @@ namespace fexp::app {
 /// log.txt of a run: one line for each event, with date and time. Failures throw OutputError.
 class Log {
  public:
-  explicit Log(std::filesystem::path path);
+  enum class Begin { anew, go_on };
+  explicit Log(std::filesystem::path path, Begin begin = Begin::anew);
   /// Reaches the file at once.
   void line(std::string_view text);
 

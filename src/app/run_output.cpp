@@ -5,6 +5,11 @@
 
 #include <exception>
 #include <functional>
+#include <system_error>
+
+#include "app/schedule.hpp"
+#include "io/atomic_file.hpp"
+#include "io/vtkhdf_reader.hpp"
 
 namespace fexp::app {
 
@@ -16,18 +21,52 @@ using namespace std::chrono_literals;
 /// What a kill can take from the histories at most.
 constexpr auto flush_after = 1s;
 
+io::ResultsOptions options_of(const Case& loaded, std::int64_t expected_frames) {
+  return {.title = loaded.deck.title, .expected_frames = expected_frames, .deflate = loaded.deck.output.deflate};
+}
+
+std::int64_t frames_of(const Case& loaded) {
+  const io::OutputSettings& output = loaded.deck.output;
+  return Schedule(loaded.model.run.duration, output.results_interval, output.history_interval).frames();
+}
+
+std::vector<double> times_of(const fs::path& results, std::int64_t frames) {
+  return frames > 0 ? io::ResultsReader(results).times() : std::vector<double>{};
+}
+
 }  // namespace
 
 RunOutput::RunOutput(const io::RunDirectory& directory, const Case& loaded, std::int64_t expected_frames, bool hashes)
     : loaded_(loaded),
+      directory_(directory),
       log_(directory.log()),
-      results_(directory.results(), loaded.model,
-               {.title = loaded.deck.title, .expected_frames = expected_frames, .deflate = loaded.deck.output.deflate}),
+      results_(directory.results(), loaded.model, options_of(loaded, expected_frames)),
       xdmf_(directory.xdmf(), io::RunDirectory::results_name, loaded.model),
       histories_(directory, loaded) {
   if (hashes) {
     hashes_.emplace(directory.hashes());
   }
+}
+
+RunOutput::RunOutput(const io::RunDirectory& directory, const Case& loaded, const OutputMark& mark)
+    : loaded_(loaded),
+      directory_(directory),
+      log_(directory.log(), Log::Begin::go_on),
+      results_(io::ResultsWriter::resume(directory.results(), loaded.model, mark.frames,
+                                         options_of(loaded, frames_of(loaded)))),
+      xdmf_(directory.xdmf(), io::RunDirectory::results_name, loaded.model, times_of(directory.results(), mark.frames)),
+      histories_(directory, loaded, &mark),
+      frame_step_(mark.frame_step),
+      row_step_(mark.row_step) {
+  if (mark.csv_bytes.contains(directory.hashes().stem().string())) {
+    hashes_ = io::HashLogWriter::resume(directory.hashes(), mark.bytes_of(directory.hashes()));
+  }
+  std::error_code error;
+  fs::remove(directory.summary(), error);
+}
+
+void RunOutput::log_resumed(const model::State& state) {
+  log_.line(fmt::format("resumed at step {}, time {:.6g}", state.step, state.time));
 }
 
 void RunOutput::epoch(const cluster::EpochReport& report) {
@@ -76,6 +115,29 @@ void RunOutput::flush() {
   flushed_ = std::chrono::steady_clock::now();
 }
 
+OutputMark RunOutput::mark() {
+  flush();
+  OutputMark mark;
+  mark.frames = results_.frames();
+  mark.frame_step = frame_step_;
+  mark.row_step = row_step_;
+  histories_.mark(mark);
+  if (hashes_) {
+    mark.note(directory_.hashes(), hashes_->bytes());
+  }
+  return mark;
+}
+
+void RunOutput::sync() {
+  histories_.sync();
+  if (hashes_) {
+    hashes_->sync();
+  }
+  results_.sync();
+  io::sync_directory(directory_.path());
+  flushed_ = std::chrono::steady_clock::now();
+}
+
 void RunOutput::close() {
   std::exception_ptr first;
   const auto attempt = [&first](const std::function<void()>& work) {
@@ -100,10 +162,10 @@ void RunOutput::close() {
 
 std::vector<std::pair<std::string, std::string>> files_of(const io::RunDirectory& directory) {
   std::vector<std::pair<std::string, std::string>> files{
-      {"results", directory.results().string()}, {"xdmf", directory.xdmf().string()},
-      {"deck", directory.deck().string()},       {"versions", directory.versions().string()},
-      {"log", directory.log().string()},         {"summary", directory.summary().string()},
-      {"hashes", directory.hashes().string()}};
+      {"results", directory.results().string()},   {"xdmf", directory.xdmf().string()},
+      {"deck", directory.deck().string()},         {"inputs", directory.inputs().string()},
+      {"versions", directory.versions().string()}, {"log", directory.log().string()},
+      {"summary", directory.summary().string()},   {"hashes", directory.hashes().string()}};
   for (const char* name : {"energies", "momenta", "steps", "planes", "nodes", "bodies"}) {
     files.emplace_back(name, directory.history(name).string());
   }

@@ -11,6 +11,7 @@
 #include "app/histories.hpp"
 #include "app/load.hpp"
 #include "app/log.hpp"
+#include "app/output_mark.hpp"
 #include "cluster/simulation.hpp"
 #include "io/hash_log.hpp"
 #include "io/run_directory.hpp"
@@ -25,14 +26,25 @@ class RunOutput {
  public:
   /// Creates the files. `hashes`: hashes.csv too.
   RunOutput(const io::RunDirectory& directory, const Case& loaded, std::int64_t expected_frames, bool hashes);
+  /// Goes on in the files of a run that was at `mark`, and drops what follows in them; the same can be done again. The
+  /// log keeps all its lines, and a summary of the run's earlier end is removed. A file that is not what the run had
+  /// written is an OutputError. The state at the mark is not written again, where it was a frame or had rows.
+  RunOutput(const io::RunDirectory& directory, const Case& loaded, const OutputMark& mark);
 
   void log(std::string_view text) { log_.line(text); }
+  /// Notes in the log where the run goes on.
+  void log_resumed(const model::State& state);
   /// After every epoch: hashes, and what the histories sum up between their rows.
   void epoch(const cluster::EpochReport& report);
   /// Writes the present state as a frame; nothing when the last frame is of this step.
   void frame(const cluster::Simulation& simulation, const cluster::EpochReport& report);
   /// Writes rows of the present state; nothing when the last rows are of this step.
   void row(const cluster::Simulation& simulation, const cluster::EpochReport& report);
+
+  /// Where the files stand; hands all of them to the operating system.
+  [[nodiscard]] OutputMark mark();
+  /// Puts all files on the disk, as far as mark() goes: before a checkpoint that is to survive a crash of the machine.
+  void sync();
 
   /// Closes all files. After an error it leaves nothing open, keeps what can be kept and throws the first error.
   void close();
@@ -43,6 +55,7 @@ class RunOutput {
   void flush();
 
   const Case& loaded_;
+  io::RunDirectory directory_;
   Log log_;
   io::ResultsWriter results_;
   io::XdmfWriter xdmf_;

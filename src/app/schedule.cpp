@@ -71,6 +71,18 @@ void Schedule::advance() {
   find_next();
 }
 
+void Schedule::skip_to(double time) {
+  for (Series* series : {&results_, &rows_}) {
+    // The quotient is rounded, so the search begins below it.
+    series->number = std::max<std::int64_t>(1, static_cast<std::int64_t>(time / series->interval) - 1);
+    while (series->time() < time + same_) {
+      ++series->number;
+    }
+  }
+  over_ = time >= duration_;
+  find_next();
+}
+
 std::int64_t Schedule::frames() const noexcept {
   // Multiples below the end, the start and the end.
   return static_cast<std::int64_t>(std::ceil((duration_ - same_) / results_.interval)) + 1;

@@ -28,6 +28,8 @@ class Schedule {
   [[nodiscard]] bool row_due() const noexcept { return row_due_; }
   /// Goes on to the moment after.
   void advance();
+  /// Goes on, or back, to the first moment after `time`; a moment at `time`, but for rounding, is over.
+  void skip_to(double time);
 
   /// Frames of a whole run, the first and the last included.
   [[nodiscard]] std::int64_t frames() const noexcept;

@@ -19,10 +19,15 @@ bool parse(const std::string& text, T& value, int base = 10) {
   return code == std::errc{} && stop == end;
 }
 
+std::vector<Column> columns() { return {{"step", ""}, {"body", ""}, {"hash", ""}}; }
+
 }  // namespace
 
-HashLogWriter::HashLogWriter(std::filesystem::path path)
-    : csv_(std::move(path), {{"step", ""}, {"body", ""}, {"hash", ""}}) {}
+HashLogWriter::HashLogWriter(std::filesystem::path path) : csv_(std::move(path), columns()) {}
+
+HashLogWriter HashLogWriter::resume(std::filesystem::path path, std::uint64_t bytes) {
+  return HashLogWriter(CsvWriter::resume(std::move(path), columns(), bytes));
+}
 
 void HashLogWriter::append(const HashRow& row) {
   const std::string hash = hash_text(row.hash);

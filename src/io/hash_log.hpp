@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "base/index.hpp"
@@ -23,11 +24,17 @@ struct HashRow {
 class HashLogWriter {
  public:
   explicit HashLogWriter(std::filesystem::path path);
+  /// Goes on after the first `bytes` bytes of a file, as CsvWriter does.
+  [[nodiscard]] static HashLogWriter resume(std::filesystem::path path, std::uint64_t bytes);
   void append(const HashRow& row);
   void flush() { csv_.flush(); }
+  void sync() { csv_.sync(); }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return csv_.bytes(); }
   void close() { csv_.close(); }
 
  private:
+  explicit HashLogWriter(CsvWriter csv) : csv_(std::move(csv)) {}
+
   CsvWriter csv_;
 };
 

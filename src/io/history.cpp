@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <fstream>
 #include <iterator>
 #include <system_error>
 #include <utility>
@@ -55,6 +56,31 @@ struct CellText {
   void operator()(double value) const { fmt::format_to(std::back_inserter(line), "{}", value); }
   void operator()(std::string_view value) const { line += csv_text(value); }
 };
+
+/// Whether a file that a run goes on with is still what the run had written: a header, and rows up to `bytes`.
+void check_beginning(const std::filesystem::path& path, const std::string& header, std::uint64_t bytes) {
+  const auto refuse = [&path](const std::string& why) {
+    throw OutputError(path, "cannot go on: " + why,
+                      "put the file back as the run left it, or run the deck again from the start");
+  };
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) {
+    refuse("the file is missing");
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::string beginning(header.size(), '\0');
+  if (!file.read(beginning.data(), static_cast<std::streamsize>(header.size())) || beginning != header) {
+    refuse("the file has other columns");
+  }
+  if (size < bytes) {
+    refuse(fmt::format("the file has {} bytes, and the run had written {} before the checkpoint", size, bytes));
+  }
+  char last = '\0';
+  if (bytes < header.size() || !file.seekg(static_cast<std::streamoff>(bytes - 1)).get(last) || last != '\n') {
+    refuse(fmt::format("no row ends at byte {}, where the checkpoint was made: the file has been changed", bytes));
+  }
+}
 
 std::vector<std::string> split(std::string_view line) {
   std::vector<std::string> cells(1);
@@ -112,16 +138,13 @@ CsvWriter::CsvWriter(std::filesystem::path path, std::vector<Column> columns, in
   }
 }
 
-CsvWriter CsvWriter::resume(std::filesystem::path path, std::vector<Column> columns) {
-  const std::string text = read_whole(path);
-  const std::string header = header_line(columns);
-  if (text.compare(0, header.size(), header) != 0) {
-    throw OutputError(path, "cannot go on: the file has other columns", "resume with the deck that the run began with");
-  }
+CsvWriter CsvWriter::resume(std::filesystem::path path, std::vector<Column> columns, std::uint64_t bytes) {
+  check_beginning(path, header_line(columns), bytes);
   CsvWriter writer(std::move(path), std::move(columns), 0);
-  if (ftruncate(writer.file_, static_cast<off_t>(text.rfind('\n') + 1)) != 0) {
+  if (ftruncate(writer.file_, static_cast<off_t>(bytes)) != 0) {
     fail(writer.path_, errno);
   }
+  writer.bytes_ = bytes;
   return writer;
 }
 
@@ -129,12 +152,14 @@ CsvWriter::CsvWriter(CsvWriter&& other) noexcept
     : path_(std::move(other.path_)),
       columns_(std::move(other.columns_)),
       waiting_(std::move(other.waiting_)),
+      bytes_(other.bytes_),
       file_(std::exchange(other.file_, -1)) {}
 
 CsvWriter& CsvWriter::operator=(CsvWriter&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(columns_, other.columns_);
   std::swap(waiting_, other.waiting_);
+  std::swap(bytes_, other.bytes_);
   std::swap(file_, other.file_);
   return *this;
 }
@@ -170,6 +195,7 @@ void CsvWriter::flush() {
     const ssize_t count = ::write(file_, waiting_.data() + done, waiting_.size() - done);
     if (count >= 0) {
       done += static_cast<std::size_t>(count);
+      bytes_ += static_cast<std::uint64_t>(count);
     } else if (errno != EINTR) {
       const int code = errno;
       waiting_.clear();
@@ -177,6 +203,14 @@ void CsvWriter::flush() {
     }
   }
   waiting_.clear();
+}
+
+void CsvWriter::sync() {
+  flush();
+  // A place that is no file on a disk (a pipe, a device) cannot be synchronised, nor cut back later.
+  if (fsync(file_) != 0 && errno != EINVAL && errno != EROFS) {
+    fail(path_, errno);
+  }
 }
 
 void CsvWriter::close() {

@@ -49,8 +49,8 @@ class CsvWriter {
  public:
   /// Creates the file, replacing one of that name, and writes the header.
   CsvWriter(std::filesystem::path path, std::vector<Column> columns);
-  /// Goes on in a file with the same header, after its last whole line.
-  [[nodiscard]] static CsvWriter resume(std::filesystem::path path, std::vector<Column> columns);
+  /// Goes on in a file with the same header after its first `bytes` bytes, which end a line; what follows is dropped.
+  [[nodiscard]] static CsvWriter resume(std::filesystem::path path, std::vector<Column> columns, std::uint64_t bytes);
   CsvWriter(CsvWriter&& other) noexcept;
   CsvWriter& operator=(CsvWriter&& other) noexcept;
   ~CsvWriter();
@@ -60,7 +60,13 @@ class CsvWriter {
   void row(std::initializer_list<Cell> cells) { row(std::span(cells.begin(), cells.size())); }
   /// Hands all rows so far to the operating system; rows also go out by themselves when 64 KiB are waiting.
   void flush();
+  /// Puts all rows so far on the disk.
+  void sync();
   void close();
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  /// Length of the file; after flush() that of all rows so far.
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
 
  private:
   CsvWriter(std::filesystem::path path, std::vector<Column> columns, int flags);
@@ -68,6 +74,7 @@ class CsvWriter {
   std::filesystem::path path_;
   std::vector<Column> columns_;
   std::string waiting_;
+  std::uint64_t bytes_{};
   int file_{-1};
 };
 

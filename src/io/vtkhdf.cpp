@@ -244,6 +244,11 @@ ResultsWriter ResultsWriter::resume(const std::filesystem::path& path, const mod
     // Killed within its first frame, a file may hold half an index: there is nothing to keep.
     return {path, model, options};
   }
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    throw OutputError(path, "cannot go on: the file is missing",
+                      "put the file back as the run left it, or run the deck again from the start");
+  }
   auto parts = std::make_unique<Parts>(Parts{.file = hdf5::File::open_to_append(path),
                                              .frames = frames,
                                              .nodes = model.node_count(),
@@ -293,6 +298,12 @@ void ResultsWriter::append(const model::Frame& frame) {
   }
   ++parts_->frames;
   parts_->usable = true;
+}
+
+void ResultsWriter::sync() {
+  if (!parts_->abandoned) {
+    parts_->file.sync();
+  }
 }
 
 std::int64_t ResultsWriter::frames() const noexcept { return parts_->frames; }

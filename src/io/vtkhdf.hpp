@@ -38,6 +38,9 @@ class ResultsWriter {
 
   void append(const model::Frame& frame);
 
+  /// Puts all frames so far on the disk.
+  void sync();
+
   /// Complete frames in the file.
   [[nodiscard]] std::int64_t frames() const noexcept;
 

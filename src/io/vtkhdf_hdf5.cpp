@@ -168,6 +168,14 @@ void File::abandon() noexcept {
 
 void File::flush() { check(H5Fflush(id(), H5F_SCOPE_LOCAL), "write results"); }
 
+void File::sync() {
+  flush();
+  if (fsync(descriptor()) != 0) {
+    const std::string reason = std::generic_category().message(errno);
+    throw OutputError(path_, "cannot write results: " + reason, cure_for(reason));
+  }
+}
+
 void File::close() {
   if (!file_.reset()) {
     fail("finish the results file");

@@ -73,6 +73,8 @@ class File {
   void reserve();
   /// Hands everything in memory to the operating system.
   void flush();
+  /// Likewise, and waits until it is on the disk.
+  void sync();
   /// Leaves the file as it stands now: closing it writes no more to it.
   void abandon() noexcept;
   /// Closes the file; throws when what was in memory could not be written.

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "io/atomic_file.hpp"
@@ -32,11 +31,15 @@ constexpr const char* tail = "</Grid>\n</Domain>\n</Xdmf>\n";
 
 }  // namespace
 
-XdmfWriter::XdmfWriter(std::filesystem::path path, std::string results, const model::Model& model)
+XdmfWriter::XdmfWriter(std::filesystem::path path, std::string results, const model::Model& model,
+                       std::span<const double> times)
     : path_(std::move(path)),
       results_(std::move(results)),
       nodes_(model.node_count()),
       elements_(model.element_count()) {
+  for (const double time : times) {
+    list(time);
+  }
   write();
 }
 
@@ -80,29 +83,27 @@ std::string XdmfWriter::frame_text(std::int64_t frame, double time) const {
   return text + "</Grid>\n";
 }
 
+void XdmfWriter::list(double time) {
+  frames_text_ += frame_text(frames_, time);
+  ++frames_;
+}
+
 void XdmfWriter::append(double time) {
-  frames_text_ += frame_text(static_cast<std::int64_t>(frame_ends_.size()), time);
-  frame_ends_.push_back(frames_text_.size());
-  if (frame_ends_.size() - written_ > frame_ends_.size() / 100) {
+  list(time);
+  if (frames_ - written_ > frames_ / 100) {
     write();
   }
 }
 
-void XdmfWriter::truncate(std::int64_t frames) {
-  frame_ends_.resize(std::min(frame_ends_.size(), static_cast<std::size_t>(frames)));
-  frames_text_.resize(frame_ends_.empty() ? 0 : frame_ends_.back());
-  write();
-}
-
 void XdmfWriter::close() {
-  if (written_ != frame_ends_.size()) {
+  if (written_ != frames_) {
     write();
   }
 }
 
 void XdmfWriter::write() {
   write_atomically(path_, head + frames_text_ + tail);
-  written_ = frame_ends_.size();
+  written_ = frames_;
 }
 
 }  // namespace fexp::io

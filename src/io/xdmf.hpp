@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,17 +16,18 @@ namespace fexp::io {
 class XdmfWriter {
  public:
   /// `results` is the name of the VTKHDF file, in the same directory as `path`.
-  XdmfWriter(std::filesystem::path path, std::string results, const model::Model& model);
+  /// `times` are those of the frames that are in the results already; a file of that name is replaced.
+  XdmfWriter(std::filesystem::path path, std::string results, const model::Model& model,
+             std::span<const double> times = {});
 
   /// Lists one more frame, which must be in the results already. A long list is written out only when it has grown by
   /// a hundredth, so that the time spent on it stays small; close() writes the rest.
   void append(double time);
-  /// Drops frames after the first `frames`.
-  void truncate(std::int64_t frames);
   void close();
 
  private:
   void write();
+  void list(double time);
   [[nodiscard]] std::string frame_text(std::int64_t frame, double time) const;
   [[nodiscard]] std::string rows_text(const std::string& dataset, std::int64_t first, std::int64_t rows, int components,
                                       const std::string& number) const;
@@ -35,8 +37,8 @@ class XdmfWriter {
   std::int64_t nodes_{};
   std::int64_t elements_{};
   std::string frames_text_;
-  std::vector<std::size_t> frame_ends_;  // into frames_text_
-  std::size_t written_{};
+  std::int64_t frames_{};
+  std::int64_t written_{};
 };
 
 }  // namespace fexp::io

@@ -84,15 +84,53 @@ TEST(history, the_file_never_holds_half_a_line) {
   EXPECT_EQ(io::read_csv(directory / "a.csv").rows.size(), 20000U);
 }
 
-TEST(history, goes_on_after_the_last_whole_line) {
+TEST(history, goes_on_after_the_length_it_had_and_drops_what_follows) {
   const TemporaryDirectory directory;
   const std::vector<io::Column> columns{{"a", "s"}};
-  std::ofstream(directory / "a.csv") << "a [s]\n1\n2\n3.14";
-  io::CsvWriter writer = io::CsvWriter::resume(directory / "a.csv", columns);
-  writer.row({4.5});
-  writer.close();
-  EXPECT_EQ(io::read_whole(directory / "a.csv"), "a [s]\n1\n2\n4.5\n");
-  EXPECT_THROW((void)io::CsvWriter::resume(directory / "a.csv", {{"b", "s"}}), io::OutputError);
+  io::CsvWriter first(directory / "a.csv", columns);
+  EXPECT_EQ(first.bytes(), 6U);
+  first.row({1.0});
+  first.flush();
+  const std::uint64_t bytes = first.bytes();
+  first.row({2.0});
+  first.row({3.0});
+  first.sync();
+  EXPECT_EQ(first.bytes(), std::filesystem::file_size(directory / "a.csv"));
+  std::ofstream(directory / "a.csv", std::ios::app) << "3.1";
+  for (int i = 0; i < 2; ++i) {
+    io::CsvWriter writer = io::CsvWriter::resume(directory / "a.csv", columns, bytes);
+    EXPECT_EQ(writer.bytes(), bytes);
+    writer.row({4.5});
+    writer.close();
+    EXPECT_EQ(writer.bytes(), bytes + 4);
+    EXPECT_EQ(io::read_whole(directory / "a.csv"), "a [s]\n1\n4.5\n");
+  }
+}
+
+TEST(history, does_not_go_on_in_a_file_that_is_not_what_it_was) {
+  const TemporaryDirectory directory;
+  const auto error_of = [&](const char* text, std::uint64_t bytes) -> std::string {
+    const std::filesystem::path path = directory.write("a.csv", text);
+    try {
+      (void)io::CsvWriter::resume(path, {{"a", "s"}}, bytes);
+    } catch (const io::OutputError& error) {
+      EXPECT_EQ(error.path(), path);
+      EXPECT_NE(error.cure().find("put the file back"), std::string::npos);
+      EXPECT_EQ(io::read_whole(path), text) << "the refused file was changed";
+      return error.message();
+    }
+    return "";
+  };
+  EXPECT_EQ(error_of("a [s]\n1\n", 8), "");
+  EXPECT_EQ(error_of("b [s]\n1\n", 8), "cannot go on: the file has other columns");
+  EXPECT_EQ(error_of("a [", 8), "cannot go on: the file has other columns");
+  EXPECT_EQ(error_of("a [s]\n1\n", 10),
+            "cannot go on: the file has 8 bytes, and the run had written 10 before the checkpoint");
+  for (const std::uint64_t bytes : {7U, 2U, 0U}) {
+    EXPECT_NE(error_of("a [s]\n1\n", bytes).find("no row ends at byte"), std::string::npos);
+  }
+  EXPECT_THROW((void)io::CsvWriter::resume(directory / "none.csv", {{"a", "s"}}, 6), io::OutputError);
+  EXPECT_FALSE(std::filesystem::exists(directory / "none.csv"));
 }
 
 TEST(history, a_full_disk_is_an_error_with_path) {

@@ -61,6 +61,37 @@ TEST(schedule, meets_every_multiple_of_any_two_intervals_once_and_the_end) {
   }
 }
 
+/// The moments from the first after `time` on.
+Moments moments_after(Schedule schedule, double time) {
+  schedule.skip_to(time);
+  return moments_of(schedule);
+}
+
+TEST(schedule, taken_up_at_any_time_goes_on_with_the_moments_that_are_left) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  for (int trial = 0; trial < 100; ++trial) {
+    const double duration = std::pow(10.0, 4.0 * part(random) - 2.0);
+    const double results = duration * (trial % 4 == 0 ? 0.1 : 0.01 + part(random));
+    const double history =
+        trial % 3 == 0 ? results / (1 + static_cast<int>(random() % 30)) : duration * part(random) + 0.001 * duration;
+    Schedule schedule(duration, results, history);
+    const Moments all = moments_after(schedule, 0.0);
+    ASSERT_EQ(all.all, moments_of(schedule).all);
+    for (double before = 0.0; !schedule.over(); before = schedule.next(), schedule.advance()) {
+      // At the moment that was written last, between it and the next, and close to the next.
+      for (const double time : {before, before + part(random) * 0.99 * (schedule.next() - before)}) {
+        const Moments left = moments_after(schedule, time);
+        const Moments expected = moments_of(schedule);
+        ASSERT_EQ(left.all, expected.all) << time << " of " << duration << ", " << results << ", " << history;
+        ASSERT_EQ(left.frames, expected.frames);
+        ASSERT_EQ(left.rows, expected.rows);
+      }
+    }
+    EXPECT_TRUE(moments_after(schedule, duration).all.empty());
+  }
+}
+
 TEST(schedule, moments_that_differ_by_rounding_are_one) {
   // 3 x 0.1 is above 0.3, and 7 x 0.3 above 2.1.
   const Moments moments = moments_of(Schedule(2.1, 0.3, 0.1));

@@ -105,7 +105,9 @@ ExitCode command(const std::string& run, const json& question) {
 std::string status_text(const json& status) {
   std::string text = fmt::format("{}: {}, world {}, step {}\n", status.value("run", ""), status.value("phase", ""),
                                  status.value("world", 0), status.value("step", std::int64_t{0}));
-  for (const json& machine : status.value("machines", json::array())) {
+  const json machines = status.value("machines", json::array());
+  const json worker = status.value("worker", json::object());
+  for (const json& machine : machines) {
     text += fmt::format("  {:<16} {}", machine.value("name", ""), machine.value("state", ""));
     if (machine.value("retry_in", json()).is_number()) {
       text += fmt::format(", tried again in {:.0f} s", machine.value("retry_in", 0.0));
@@ -113,7 +115,7 @@ std::string status_text(const json& status) {
     const std::string reason = machine.value("reason", "");
     text += reason.empty() ? "\n" : fmt::format(": {}\n", reason);
   }
-  for (const auto& [key, value] : status.value("worker", json::object()).items()) {
+  for (const auto& [key, value] : worker.items()) {
     if (key != "event" && key != "step") {
       text += fmt::format("  {}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
     }

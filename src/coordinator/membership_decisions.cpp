@@ -151,7 +151,8 @@ std::vector<Machine> Membership::usable() const {
     }
   }
   // Rank 0 writes the results, so it must be here.
-  std::ranges::stable_partition(machines, [this](const Machine& m) { return settings_.is_own(m.address); });
+  std::stable_partition(machines.begin(), machines.end(),
+                        [this](const Machine& m) { return settings_.is_own(m.address); });
   return machines;
 }
 

@@ -7,7 +7,7 @@ usage: fake_worker.py worker --run-id ID --world K --socket PATH [--threads N] [
 The ranks meet after every epoch in files beside the run's memory, so a rank that does not run holds up all of them, as
 a reduction would. FAKE_STEPS: steps of the run; FAKE_EPOCH: seconds that an epoch of 10 steps takes. Files in the
 directory of the run change what rank 0 does: "full" makes it end with an error of output, "silent" keeps it from
-starting, "wrong" makes it end before it starts.
+starting, "wrong" makes it end before it starts, "finish" makes the run complete after the present epoch.
 """
 import argparse
 import json
@@ -64,6 +64,7 @@ class Channel:
         self.socket.connect(path)
         self.text = b""
         self.lost = False
+        self.command = ""
         self.send({"hello": "world", "world": world})
 
     def send(self, message):
@@ -86,6 +87,11 @@ class Channel:
         line, _, self.text = self.text.partition(b"\n")
         return json.loads(line) if line else None
 
+    def is_lost(self):
+        """Takes what has come; a command is kept."""
+        self.command = (self.poll() or {}).get("command", self.command)
+        return self.lost
+
 
 def beat(path):
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -94,7 +100,7 @@ def beat(path):
         time.sleep(0.2)
 
 
-def lead(arguments, memory, ranks):
+def lead(arguments, ranks):
     channel = Channel(arguments.socket, arguments.world)
     greeting = channel.poll(10.0)
     run = Path(greeting["run"])
@@ -109,9 +115,9 @@ def lead(arguments, memory, ranks):
     channel.send({"event": "started", "step": step, "time": 0.1 * step})
     events = [event for event in greeting["events"] if event > step]
     reason = ""
-    while not reason and step < int(os.environ.get("FAKE_STEPS", "200")):
+    while not reason and step < int(os.environ.get("FAKE_STEPS", "200")) and not (run / "finish").exists():
         time.sleep(float(os.environ.get("FAKE_EPOCH", "0.05")))
-        ranks.lead(step + EPOCH, lambda: channel.poll() is None and channel.lost)
+        ranks.lead(step + EPOCH, channel.is_lost)
         if (run / "full").exists():
             reason = "output_error"
             break
@@ -119,9 +125,9 @@ def lead(arguments, memory, ranks):
         snapshot.with_suffix(".new").write_text(str(step), encoding="utf-8")
         snapshot.with_suffix(".new").rename(snapshot)
         channel.send({"event": "status", "step": step, "time": 0.1 * step, "islands": 3})
-        command = (channel.poll() or {}).get("command")
-        reason = {"reform": "reform", "stop": "interrupted"}.get(command, "")
-        if channel.lost:
+        lost = channel.is_lost()
+        reason = {"reform": "reform", "stop": "interrupted"}.get(channel.command, "")
+        if lost:
             reason = "lost_coordinator"
         elif not reason and any(event <= step for event in events):
             reason = "reform"
@@ -149,7 +155,7 @@ def main():
     threading.Thread(target=beat, args=(memory / os.environ["FEXP_HOST"] / "alive",), daemon=True).start()
     ranks = Ranks(memory / "_ranks", arguments.world, rank, count)
     if rank == 0:
-        lead(arguments, memory, ranks)
+        lead(arguments, ranks)
     else:
         ranks.follow()
 

@@ -63,7 +63,9 @@ std::vector<std::string> telling_lines(std::string_view output) {
       continue;
     }
     line = line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
-    if (std::ranges::none_of(general, [&](const char* text) { return line.starts_with(text); })) {
+    const bool is_general = std::ranges::any_of(general, [&](const char* text) { return line.starts_with(text); });
+    // Every rank may have said the same.
+    if (!is_general && std::ranges::find(lines, line) == lines.end()) {
       lines.push_back(line);
     }
   }
@@ -115,6 +117,8 @@ std::vector<std::string> mpirun_command(const WorldLaunch& launch) {
   set("plm_rsh_agent", agent_or_ssh(launch.agent));
   set("plm_rsh_no_tree_spawn", "1");
   set("mpi_yield_when_idle", "1");
+  // When a rank has died the others cannot end in order, so mpirun need not wait a second on every machine in turn.
+  set("odls_base_sigkill_timeout", "0");
   words.insert(words.end(), more.begin(), more.end());
   for (std::size_t rank = 0; rank < launch.ranks.size(); ++rank) {
     const Machine& machine = launch.ranks[rank];

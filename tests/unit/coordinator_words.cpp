@@ -16,7 +16,7 @@ namespace {
 
 Machine parsed(const std::string& text) {
   ErrorList errors;
-  const Machine machine = parse_machine(text, {}, errors);
+  Machine machine = parse_machine(text, {}, errors);
   EXPECT_TRUE(errors.empty()) << text;
   return machine;
 }
@@ -126,7 +126,8 @@ TEST(launch_failure, names_the_machine_whose_rank_was_killed) {
 
 TEST(launch_failure, tells_the_workers_own_words) {
   const LaunchFailure failure = explain_launch_failure(
-      "fexp: cannot read the deck\n------\nPrimary job  terminated normally, but 1 process returned\na non-zero exit "
+      "fexp: cannot read the deck\nfexp: cannot read the deck\n------\nPrimary job  terminated normally, but 1 process "
+      "returned\na non-zero exit "
       "code. Per user-direction, the job has been aborted.\n------\n-----\nmpirun detected that one or more processes "
       "exited with non-zero status, thus causing\nthe job to be terminated. The first process to do so was:\n\n  "
       "Process name: [[18083,1],0]\n  Exit code:    7\n-----\n",
@@ -150,7 +151,7 @@ TEST(launch_failure, says_how_mpirun_ended_when_it_said_nothing) {
 
 TEST(probe, knows_a_worker_of_the_run_by_its_command_line_and_nobody_else) {
   const std::string id = "0123456789abcdef";
-  const auto world = [&](std::vector<std::string> words) { return world_of_worker(words, id); };
+  const auto world = [&](const std::vector<std::string>& words) { return world_of_worker(words, id); };
   EXPECT_EQ(world({"/usr/bin/fexp", "worker", "--run-id", id, "--world", "12", "--socket", "s"}), 12);
   EXPECT_FALSE(world({"/usr/bin/fexp", "probe", "--run-id", id, "--world", "12"}));
   EXPECT_FALSE(world({"/usr/bin/fexp", "worker", "--run-id", "0123456789abcdee", "--world", "12"}));

@@ -24,12 +24,12 @@ namespace {
 constexpr std::size_t most_kept = std::size_t{64} << 10U;
 constexpr int cannot_start = 127;
 
+/// A pipe whose reading end does not wait; both -1 when there can be none.
 std::array<int, 2> make_pipe() {
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw std::system_error(errno, std::generic_category(), "no pipe to a program");
+  std::array<int, 2> ends{-1, -1};
+  if (pipe2(ends.data(), O_CLOEXEC) == 0) {
+    static_cast<void>(fcntl(ends[0], F_SETFL, O_NONBLOCK));
   }
-  static_cast<void>(fcntl(ends[0], F_SETFL, O_NONBLOCK));
   return ends;
 }
 
@@ -109,19 +109,23 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words,
   const std::array<int, 2> output = make_pipe();
   const std::array<int, 2> errors = make_pipe();
   const pid_t parent = getpid();
-  id_ = fork();
+  id_ = output[0] >= 0 && errors[0] >= 0 ? fork() : -1;
   if (id_ == 0) {
     become(argument_pointers.data(), variable_pointers.data(), parent, output[1], errors[1]);
   }
   const int failure = errno;
-  close(output[1]);
-  close(errors[1]);
+  for (const int end : {output[1], errors[1]}) {
+    if (end >= 0) {
+      close(end);
+    }
+  }
   output_descriptor_ = output[0];
   errors_descriptor_ = errors[0];
   if (id_ < 0) {
-    close(output_descriptor_);
-    close(errors_descriptor_);
-    throw std::system_error(failure, std::generic_category(), "cannot start a program");
+    exited_ = true;
+    status_ = cannot_start << 8;
+    errors_ = fmt::format("cannot start {}: {}\n", words.front(), std::generic_category().message(failure));
+    return;
   }
   // Here too, so that the group is there before the first signal to it.
   static_cast<void>(setpgid(id_, id_));

@@ -14,8 +14,7 @@ namespace fexp::coordinator {
 class ChildProcess {
  public:
   /// `words`: program and arguments; the program is looked for as a shell does. `environment` is put over this
-  /// process's own. When it cannot be started it ends with code 127, and its errors say why. Throws std::system_error
-  /// when there can be no more processes.
+  /// process's own. When it cannot be started it ends with code 127, and its errors say why.
   explicit ChildProcess(const std::vector<std::string>& words,
                         const std::map<std::string, std::string>& environment = {});
   ChildProcess(const ChildProcess&) = delete;

@@ -2,6 +2,7 @@
 #include "app/histories.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "solve/diagnostics.hpp"
 
@@ -147,6 +148,25 @@ Histories::Histories(const io::RunDirectory& directory, const Case& loaded, cons
     rollbacks_ = mark->rollbacks;
     deepest_ = mark->deepest;
   }
+}
+
+std::vector<Index> Histories::bodies_needed(const Case& loaded) {
+  const model::Model& model = loaded.model;
+  const io::OutputSettings& output = loaded.deck.output;
+  std::set<Index> bodies;
+  for (const model::NamedNodes& set : model.node_sets) {
+    if (std::ranges::find(output.nodes, set.name) != output.nodes.end()) {
+      for (const Index node : set.nodes) {
+        bodies.insert(model.node_body[at(node)]);
+      }
+    }
+  }
+  for (Index b = 0; b < model.body_count(); ++b) {
+    if (is_named(model.bodies[at(b)], output.bodies)) {
+      bodies.insert(b);
+    }
+  }
+  return {bodies.begin(), bodies.end()};
 }
 
 void Histories::add(const cluster::EpochReport& report) {

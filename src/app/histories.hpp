@@ -20,6 +20,9 @@ class Histories {
   /// Creates the files, or goes on where `mark` says.
   Histories(const io::RunDirectory& directory, const Case& loaded, const OutputMark* mark = nullptr);
 
+  /// Bodies whose states rows are made from, ascending.
+  [[nodiscard]] static std::vector<Index> bodies_needed(const Case& loaded);
+
   /// Takes note of what an epoch did; the next row of steps.csv tells of all epochs since the row before.
   void add(const cluster::EpochReport& report);
   /// One row (or one for each node and body) of the present state in every file.

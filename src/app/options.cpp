@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/options.hpp"
 
+#include <map>
+#include <string>
+
 namespace fexp::app {
 
 void add_deck_option(CLI::App& options, std::string& deck) {
@@ -16,5 +19,29 @@ void add_threads_option(CLI::App& options, int& threads) {
 }
 
 void add_json_option(CLI::App& options, bool& json, const char* meaning) { options.add_flag("--json", json, meaning); }
+
+void add_drive_options(CLI::App& options, DriveSettings& settings) {
+  using cluster::PlacementRule;
+  constexpr double longest = 1.0e9;
+  options
+      .add_option("--checkpoint-every", settings.checkpoint_seconds,
+                  "Wall time between checkpoints, from which \"fexp resume\" goes on; 60 when left out, and more where "
+                  "they would cost more than 2 % of the time")
+      ->check(CLI::Range(0.0, longest))
+      ->option_text("SECONDS");
+  const std::map<std::string, PlacementRule> rules{{"elements", PlacementRule::fewest_elements},
+                                                   {"cost", PlacementRule::measured_cost}};
+  options
+      .add_option("--placement", settings.world.rule,
+                  "Where islands go on several machines: elements (to the machine with the fewest, when islands merge "
+                  "or split), or cost (by measured cost and speed); the results are the same")
+      ->transform(CLI::CheckedTransformer(rules))
+      ->option_text("RULE");
+  options
+      .add_option("--latency", settings.world.latency_seconds,
+                  "Time added to every message between machines, to see what a slow network does")
+      ->check(CLI::Range(0.0, 10.0))
+      ->option_text("SECONDS");
+}
 
 }  // namespace fexp::app

@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "app/run_driver.hpp"
+
 namespace fexp::app {
 
 /// Options that several commands share.
@@ -12,5 +14,8 @@ namespace fexp::app {
 void add_deck_option(CLI::App& options, std::string& deck);
 void add_threads_option(CLI::App& options, int& threads);
 void add_json_option(CLI::App& options, bool& json, const char* meaning);
+
+/// How often to save, and where islands go on several machines.
+void add_drive_options(CLI::App& options, DriveSettings& settings);
 
 }  // namespace fexp::app

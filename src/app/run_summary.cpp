@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "app/placement_report.hpp"
 #include "app/progress.hpp"
 #include "parallel/parallel.hpp"
 
@@ -22,6 +23,8 @@ const char* name_of(EndReason reason) {
       return "interrupted";
     case EndReason::output_error:
       return "output error";
+    case EndReason::reform:
+      return "reform";
   }
   return "";
 }
@@ -95,14 +98,16 @@ io::Summary summarise(const Case& loaded, const cluster::Simulation& simulation,
   summary.bodies = model.body_count();
   summary.threads = parallel::thread_count();
   summary.state_hash = fmt::format("{:016x}", model::state_hash(model, state));
-  summary.element_steps_per_second =
-      end.stepping_seconds > 0.0
-          ? static_cast<double>(state.step) * static_cast<double>(model.element_count()) / end.stepping_seconds
-          : 0.0;
+  summary.element_steps_per_second = end.stepping_seconds > 0.0
+                                         ? static_cast<double>(state.step - end.first_step) *
+                                               static_cast<double>(model.element_count()) / end.stepping_seconds
+                                         : 0.0;
   const solve::Energies& e = end.last.diagnostics.energies;
   summary.energies = {e.kinetic, e.internal, e.contact, e.barrier, e.external, e.damping, e.balance()};
   summary.kernel = simulation.workspace().kernel.name;
   add_extremes(simulation.extremes(), summary);
+  summary.placement = placement_of(simulation);
+  summary.network = network_of(simulation);
   if (end.reason == EndReason::fault) {
     add_fault(model, end.fault, summary);
   }
@@ -129,6 +134,12 @@ std::string summary_text(const io::Summary& s, const io::UnitNames& units, const
   text += fmt::format("  wall time  {} with {} threads ({} kernel), {}\n", wall_time_text(s.wall_seconds), s.threads,
                       s.kernel, rate_text(s.element_steps_per_second));
   text += fmt::format("  state      {} after step {}\n", s.state_hash, s.steps);
+  if (s.placement.machines.size() > 1) {
+    text += placement_text(s.placement, units);
+    text += fmt::format("  network    {:.3g} messages and {:.4g} bytes an epoch, {:.1f} % of the time waiting\n",
+                        s.network.messages_per_epoch, s.network.bytes_per_epoch, 100.0 * s.network.waiting_share);
+    text += "  balance    " + s.network.balance + "\n";
+  }
   return text + files_text(s);
 }
 

@@ -12,12 +12,22 @@
 
 namespace fexp::cluster {
 
-/// What a rank asks all others for at the end of an epoch; the largest counts.
-enum class Request : std::int32_t {
-  none,
-  reform,        ///< End this world, because other machines are to make the next one
-  stop,          ///< End the run here
-  output_error,  ///< End the run: its files cannot be written
+/// What a rank asks all others for at the end of an epoch. What one asks for, all do.
+struct Requests {
+  bool reform{};        ///< End this world, because other machines are to make the next one
+  bool stop{};          ///< End the run here
+  bool output_error{};  ///< End the run here, because its files cannot be written
+  bool snapshot{};      ///< Keep the state in the machines' memory
+  bool checkpoint{};    ///< Keep the state on the disk
+
+  Requests& operator|=(const Requests& other) noexcept {
+    reform = reform || other.reform;
+    stop = stop || other.stop;
+    output_error = output_error || other.output_error;
+    snapshot = snapshot || other.snapshot;
+    checkpoint = checkpoint || other.checkpoint;
+    return *this;
+  }
 };
 
 /// What one epoch did. The same on every rank, but for the hashes.
@@ -40,7 +50,7 @@ struct EpochReport {
   double angular_momentum_error{};
   std::vector<solve::HashRecord> hashes;  ///< By step, then body; on rank 0 only.
   Fault fault;
-  Request request{Request::none};  ///< Of any rank
+  Requests requests;  ///< Of all ranks
 };
 
 /// Largest values over the run.

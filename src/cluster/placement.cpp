@@ -18,10 +18,12 @@ constexpr double worth_having = 0.01;
 /// Islands that balance() moves at most, for each machine.
 constexpr std::size_t rounds_per_machine = 4;
 
-/// Loads of the machines, and the least loaded one in logarithmic time. Loads are divided by speeds.
+/// Loads of the machines, and the least loaded one in logarithmic time. Loads are divided by speeds, but under the
+/// paper's rule, which counts elements alone.
 class Loads {
  public:
-  explicit Loads(std::span<const Machine> machines) : machines_(machines), load_(machines.size(), 0.0) {
+  Loads(std::span<const Machine> machines, PlacementRule rule)
+      : machines_(machines), load_(machines.size(), 0.0), by_speed_(rule == PlacementRule::measured_cost) {
     for (std::size_t m = 0; m < machines_.size(); ++m) {
       enter(static_cast<MachineIndex>(m));
     }
@@ -60,7 +62,7 @@ class Loads {
  private:
   using Entry = std::pair<double, MachineIndex>;
   static std::size_t index(MachineIndex machine) { return static_cast<std::size_t>(machine); }
-  [[nodiscard]] double speed(MachineIndex machine) const { return machines_[index(machine)].speed; }
+  [[nodiscard]] double speed(MachineIndex machine) const { return by_speed_ ? machines_[index(machine)].speed : 1.0; }
   void enter(MachineIndex machine) {
     if (present(machine)) {
       queue_.emplace(of(machine), machine);
@@ -69,6 +71,7 @@ class Loads {
 
   std::span<const Machine> machines_;
   std::vector<double> load_;
+  bool by_speed_;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
 
@@ -84,7 +87,7 @@ struct Candidate {
 
 class Placer {
  public:
-  explicit Placer(const PlacementTask& task) : task_(task), loads_(task.machines) {
+  explicit Placer(const PlacementTask& task) : task_(task), loads_(task.machines, task.rule) {
     placement_.owner.assign(task.owner.begin(), task.owner.end());
     reason_.resize(task.owner.size());
     find_candidates();

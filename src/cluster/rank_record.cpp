@@ -41,7 +41,7 @@ void RankRecord::add(const RankRecord& other) {
     deepest_node = other.deepest_node;
     deepest_element = other.deepest_element;
   }
-  request = std::max(request, other.request);
+  requests |= other.requests;
   moved_bytes += other.moved_bytes;
   messages += other.messages;
   message_bytes += other.message_bytes;

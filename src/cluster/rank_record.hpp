@@ -23,7 +23,7 @@ struct RankRecord {
   double deepest{};
   Index deepest_node{no_index};
   Index deepest_element{no_index};
-  Request request{Request::none};
+  Requests requests;
   std::int64_t moved_bytes{};  ///< Of bodies that changed their rank
   std::int64_t messages{};     ///< Sent since the record before
   std::int64_t message_bytes{};

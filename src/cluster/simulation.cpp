@@ -130,7 +130,7 @@ void Simulation::form_islands(const Attempt& attempt) {
 }
 
 /// Steps this machine's islands, and tells all ranks what came of it.
-RankRecord Simulation::advance_islands(const Attempt& attempt, std::int64_t hash_every, Request request,
+RankRecord Simulation::advance_islands(const Attempt& attempt, std::int64_t hash_every, const Requests& requests,
                                        EpochReport& report) {
   std::vector<Index> order;
   for (Index i = 0; i < static_cast<Index>(solvers_.size()); ++i) {
@@ -155,7 +155,7 @@ RankRecord Simulation::advance_islands(const Attempt& attempt, std::int64_t hash
   });
   RankRecord own;
   own.busy_seconds = seconds_since(start);
-  own.request = request;
+  own.requests = requests;
   for (const solve::IslandReport& island : islands) {
     own.add(island);
   }
@@ -179,7 +179,7 @@ void Simulation::put_back() {
   });
 }
 
-EpochReport Simulation::run_epoch(double target, std::int64_t hash_every, Request request) {
+EpochReport Simulation::run_epoch(double target, std::int64_t hash_every, const Requests& requests) {
   const auto start = Clock::now();
   EpochReport report;
   Attempt attempt;
@@ -190,8 +190,8 @@ EpochReport Simulation::run_epoch(double target, std::int64_t hash_every, Reques
   for (int tries = 0;; ++tries) {
     plan(target, attempt);
     form_islands(attempt);
-    const RankRecord record = advance_islands(attempt, hash_every, request, report);
-    report.request = record.request;
+    const RankRecord record = advance_islands(attempt, hash_every, requests, report);
+    report.requests = record.requests;
     const Verdict verdict = guard(attempt, record, tries < most_attempts, report.fault);
     if (verdict != Verdict::accept) {
       put_back();

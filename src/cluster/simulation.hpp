@@ -58,9 +58,9 @@ class Simulation {
   /// that it holds; together they hold every body once at least, of one moment. Throws ShipmentError when they do not.
   Simulation(const model::Model& model, solve::KernelChoice kernel, World world, std::span<const Bytes> pieces);
 
-  /// Steps until `target` time or the end of one epoch, whichever comes first. `hash_every`: see EpochPlan. `request`:
-  /// this rank's own, told to all in the report.
-  EpochReport run_epoch(double target, std::int64_t hash_every = 0, Request request = Request::none);
+  /// Steps until `target` time or the end of one epoch, whichever comes first. `hash_every`: see EpochPlan. `requests`:
+  /// this rank's own; those of all ranks are in the report.
+  EpochReport run_epoch(double target, std::int64_t hash_every = 0, const Requests& requests = {});
 
   [[nodiscard]] const model::Model& model() const noexcept { return model_; }
   /// Time and step, and the bodies of this machine; after collect() on rank 0 those that were collected too.
@@ -105,7 +105,8 @@ class Simulation {
   void move_bodies(const std::vector<MachineIndex>& owner);
   void take_up_solvers(std::vector<Island> islands);
   void find_own_bodies();
-  RankRecord advance_islands(const Attempt& attempt, std::int64_t hash_every, Request request, EpochReport& report);
+  RankRecord advance_islands(const Attempt& attempt, std::int64_t hash_every, const Requests& requests,
+                             EpochReport& report);
   RankRecord share(const RankRecord& own, std::span<const double> island_seconds);
   void take_in(int rank, ByteReader& in, std::vector<double>& island_seconds);
   void share_hashes(EpochReport& report);

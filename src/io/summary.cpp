@@ -52,6 +52,43 @@ ordered_json fault_part(const Summary::FaultPlace& f) {
   return json;
 }
 
+ordered_json placement_part(const Summary::Placement& p) {
+  ordered_json machines = ordered_json::array(), frames = ordered_json::array();
+  for (const auto& machine : p.machines) {
+    machines.push_back({{"name", machine.name},
+                        {"threads", machine.threads},
+                        {"native_threads", machine.native_threads},
+                        {"busy_seconds", machine.busy_seconds}});
+  }
+  for (const auto& frame : p.frames) {
+    frames.push_back({{"step", frame.step},
+                      {"time", frame.time},
+                      {"reason", frame.reason},
+                      {"elements", frame.elements},
+                      {"nodes", frame.nodes},
+                      {"moved_elements", frame.moved_elements},
+                      {"moved_nodes", frame.moved_nodes}});
+  }
+  return {{"machines", machines},
+          {"frames", frames},
+          {"moved_elements", p.moved_elements},
+          {"moved_nodes", p.moved_nodes},
+          {"moved_ratio", p.moved_ratio},
+          {"moved_bytes", p.moved_bytes}};
+}
+
+ordered_json network_part(const Summary::Network& n) {
+  return {{"messages_per_epoch", n.messages_per_epoch},
+          {"bytes_per_epoch", n.bytes_per_epoch},
+          {"waiting_share", n.waiting_share},
+          {"snapshot_share", n.snapshot_share},
+          {"imbalance", n.imbalance},
+          {"largest_island_share", n.largest_island_share},
+          {"time_with_one_more", n.time_with_one_more},
+          {"useful_machines", n.useful_machines},
+          {"balance", n.balance}};
+}
+
 }  // namespace
 
 ordered_json to_json(const Summary& s) {
@@ -71,6 +108,8 @@ ordered_json to_json(const Summary& s) {
   if (s.exit_reason == "fault") {
     json["fault"] = fault_part(s.fault);
   }
+  json["placement"] = placement_part(s.placement);
+  json["network"] = network_part(s.network);
   ordered_json files = ordered_json::object();
   for (const auto& [what, path] : s.files) {
     files[what] = path;

@@ -60,6 +60,44 @@ struct Summary {
     std::string cure;
   } fault;
 
+  /// Who held what. Machines in the order in which they joined.
+  struct Placement {
+    struct MachineLine {
+      std::string name;
+      int threads{};  ///< That compute
+      int native_threads{};
+      double busy_seconds{};  ///< Spent stepping in the last world
+    };
+    struct FrameLine {
+      std::int64_t step{};
+      double time{};  ///< [time]
+      std::string reason;
+      std::vector<std::int64_t> elements;  // [machines known by then]
+      std::vector<std::int64_t> nodes;     // [machines known by then]
+      std::int64_t moved_elements{};       ///< So far
+      std::int64_t moved_nodes{};
+    };
+    std::vector<MachineLine> machines;
+    std::vector<FrameLine> frames;
+    std::int64_t moved_elements{};
+    std::int64_t moved_nodes{};
+    double moved_ratio{};  ///< Moved elements over those of the model [-]
+    std::int64_t moved_bytes{};
+  } placement;
+
+  /// Of the last world.
+  struct Network {
+    double messages_per_epoch{};
+    double bytes_per_epoch{};
+    double waiting_share{};         ///< Of its time, of the rank that waited most [-]
+    double snapshot_share{};        ///< Of its time, spent saving the state [-]
+    double imbalance{};             ///< Work of the busiest machine over the mean, less 1 [-]
+    double largest_island_share{};  ///< Of the work [-]
+    double time_with_one_more{};    ///< Predicted, over the present time [-]
+    int useful_machines{1};
+    std::string balance;  ///< The same in words
+  } network;
+
   std::vector<std::pair<std::string, std::string>> files;  ///< (what it is, path)
 };
 

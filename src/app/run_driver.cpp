@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/run_driver.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "app/keeper.hpp"
+#include "app/placement_report.hpp"
+#include "app/print.hpp"
+#include "app/progress.hpp"
+#include "app/run_output.hpp"
+#include "app/run_summary.hpp"
+#include "app/schedule.hpp"
+#include "app/signals.hpp"
+#include "io/checkpoint_files.hpp"
+#include "io/output_error.hpp"
+#include "io/summary.hpp"
+#include "parallel/parallel.hpp"
+
+namespace fexp::app {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void note_output_error(const io::OutputError& error, RunEnd& end) {
+  end.reason = EndReason::output_error;
+  end.message = error.what();
+}
+
+/// Says on stderr why a run was not completed, and what to do.
+ExitCode report_end(const RunEnd& end, std::int64_t frames, const io::RunDirectory& directory) {
+  const std::string results = directory.results().string();
+  switch (end.reason) {
+    case EndReason::completed:
+    case EndReason::reform:
+      return ExitCode::done;
+    case EndReason::fault:
+      print_error(fmt::format("fexp: the run stopped: {}; cure: {}\nThe last sound state is the last frame of {}.\n",
+                              end.fault.message, end.fault.cure, results));
+      return ExitCode::fault;
+    case EndReason::interrupted:
+      print_error(
+          fmt::format("fexp: {}; all files are closed, and {} can be read up to there.\nTo go on: fexp resume {}\n",
+                      end.message, results, directory.path().string()));
+      return static_cast<ExitCode>(128 + end.signal);
+    case EndReason::output_error:
+      print_error(
+          fmt::format("fexp: {}\nThe run stopped; {} frames can be read from {}.\n", end.message, frames, results));
+      return ExitCode::output;
+  }
+  return ExitCode::internal;
+}
+
+/// The files of rank 0: new ones, or those that a run goes on in. `failure`: why there are none.
+std::optional<RunOutput> open_output(const Drive& run, const cluster::Simulation& simulation,
+                                     std::optional<std::string>& failure) {
+  const Case& loaded = run.loaded;
+  std::optional<RunOutput> output;
+  if (!run.ranks.is_first()) {
+    return output;
+  }
+  try {
+    if (run.taken_up) {
+      output.emplace(run.directory, loaded, run.taken_up->mark);
+      output->log_resumed(simulation.state());
+    } else {
+      run.directory.write_versions(io::present_versions(simulation.workspace().kernel.name));
+      const Schedule schedule(loaded.model.run.duration, loaded.deck.output.results_interval,
+                              loaded.deck.output.history_interval);
+      output.emplace(run.directory, loaded, schedule.frames(), run.settings.hash_every > 0);
+    }
+    output->log(fmt::format("fexp {} runs: {} elements, {} nodes, {} bodies, {} ranks, {} threads, {} kernel",
+                            FEXP_VERSION, loaded.model.element_count(), loaded.model.node_count(),
+                            loaded.model.body_count(), run.ranks.size(), parallel::thread_count(),
+                            simulation.workspace().kernel.name));
+  } catch (const io::OutputError& error) {
+    output.reset();
+    failure = error.what();
+  }
+  return output;
+}
+
+void close_output(std::optional<RunOutput>& output, RunEnd& end) {
+  try {
+    if (output) {
+      output->close();
+    }
+  } catch (const io::OutputError& error) {
+    // The first error counts.
+    if (end.reason != EndReason::output_error) {
+      note_output_error(error, end);
+    }
+  }
+}
+
+/// What the run's end leaves no use for.
+void clear_saved(const Drive& run, const RunEnd& end) {
+  if (end.reason != EndReason::completed && end.reason != EndReason::fault) {
+    return;
+  }
+  if (run.ranks.is_first()) {
+    io::CheckpointFiles(run.directory.checkpoints()).clear();
+  }
+  if (run.snapshots != nullptr) {
+    run.snapshots->clear();
+  }
+}
+
+}  // namespace
+
+ExitCode drive(const Drive& run, RunEnd& end) {
+  const auto start = Clock::now();
+  const Case& loaded = run.loaded;
+  cluster::World world = run.ranks.join(run.settings.world);
+  std::optional<cluster::Simulation> simulation;
+  if (run.taken_up) {
+    simulation.emplace(loaded.model, run.settings.kernel, std::move(world), run.taken_up->pieces);
+  } else {
+    simulation.emplace(loaded.model, run.settings.kernel, std::move(world));
+  }
+  Keeper keeper({run.directory.checkpoints(), run.settings.checkpoint_seconds, run.settings.hash_every});
+  if (run.link != nullptr) {
+    keeper.serve(*run.link, *run.snapshots);
+    run.link->began_at(simulation->state().step);
+    run.link->send({{"event", "started"}, {"step", simulation->state().step}, {"time", simulation->state().time}});
+  }
+  std::optional<std::string> failure;
+  std::optional<RunOutput> output = open_output(run, *simulation, failure);
+  {
+    Progress progress(run.ranks.is_first() && !run.settings.quiet, loaded.model.run.duration,
+                      loaded.deck.units.of("time"));
+    run_time_loop({loaded, run.settings.hash_every, *simulation, output ? &*output : nullptr, progress, keeper,
+                   run.taken_up.has_value(), failure},
+                  end);
+  }
+  simulation->collect();
+  if (output) {
+    output->log(end.reason == EndReason::completed ? "completed" : end.message);
+  }
+  close_output(output, end);
+  clear_saved(run, end);
+  if (!run.ranks.is_first() || end.reason == EndReason::reform) {
+    return ExitCode::done;
+  }
+  const std::int64_t frames = output ? output->frames() : 0;
+  io::Summary summary;
+  const auto finish_summary = [&] {
+    summary = summarise(loaded, *simulation, end);
+    summary.ranks = run.ranks.size();
+    summary.frames = frames;
+    summary.files = files_of(run.directory);
+    summary.wall_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    summary.network.snapshot_share =
+        (keeper.memory_clock().total_seconds() + keeper.disk_clock().total_seconds()) / summary.wall_seconds;
+  };
+  finish_summary();
+  try {
+    write_placement(run.directory, summary, loaded.deck.units);
+    finish_summary();
+    io::write_summary(run.directory.summary(), summary);
+  } catch (const io::OutputError& error) {
+    if (end.reason != EndReason::output_error) {
+      note_output_error(error, end);
+      finish_summary();
+    }
+  }
+  if (run.settings.json) {
+    print_json(io::to_json(summary));
+  } else if (!run.settings.quiet) {
+    print_out(summary_text(summary, loaded.deck.units, simulation->start(), end.last.diagnostics));
+  }
+  return report_end(end, frames, run.directory);
+}
+
+}  // namespace fexp::app

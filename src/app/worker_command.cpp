@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "app/command.hpp"
+#include "app/options.hpp"
+#include "app/print.hpp"
+#include "app/run_driver.hpp"
+#include "app/saved_run.hpp"
+#include "app/signals.hpp"
+#include "app/with_ranks.hpp"
+#include "app/worker_link.hpp"
+#include "coordinator/control_channel.hpp"
+#include "coordinator/places.hpp"
+#include "io/atomic_file.hpp"
+#include "io/checkpoint_files.hpp"
+#include "io/output_error.hpp"
+#include "io/run_directory.hpp"
+
+namespace fexp::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double greeting_seconds = 20.0;
+
+struct WorkerOptions {
+  std::string run_id;
+  int world{};
+  std::string socket;
+  int threads{};
+  bool writer_only{};
+};
+
+/// Held while this worker lives, so that the next world's worker on this machine does not read what this one writes.
+class WorkerLock {
+ public:
+  explicit WorkerLock(const fs::path& path) : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
+    if (file_ < 0 || flock(file_, LOCK_EX) != 0) {
+      throw std::runtime_error("cannot lock " + path.string());
+    }
+  }
+  WorkerLock(const WorkerLock&) = delete;
+  WorkerLock& operator=(const WorkerLock&) = delete;
+  ~WorkerLock() { ::close(file_); }
+
+ private:
+  int file_;
+};
+
+/// What the coordinator says to rank 0, on all ranks.
+nlohmann::json greeting_of(Ranks& ranks, std::optional<coordinator::ControlClient>& channel) {
+  std::string text = "{}";
+  if (channel) {
+    text =
+        channel->wait(greeting_seconds).value_or(nlohmann::json{{"error", "the coordinator does not answer"}}).dump();
+  }
+  const Bytes all = ranks.from_first(std::as_bytes(std::span(text.data(), text.size())));
+  auto greeting = nlohmann::json::parse(std::string(reinterpret_cast<const char*>(all.data()), all.size()));
+  if (greeting.contains("error")) {
+    throw std::runtime_error(greeting["error"].get<std::string>());
+  }
+  return greeting;
+}
+
+/// The checkpoint on the disk, where there is one.
+std::optional<SavedRun> on_disk(const io::RunDirectory& directory) {
+  const io::CheckpointFiles files(directory.checkpoints());
+  if (files.steps().empty()) {
+    return std::nullopt;
+  }
+  try {
+    const io::FoundCheckpoint found = files.newest();
+    return SavedRun::from(found.sections, found.path);
+  } catch (const io::OutputError& error) {
+    print_error(fmt::format("fexp: {}\n", error.what()));
+    return std::nullopt;
+  }
+}
+
+/// Where the run goes on: the newest moment that the machines' memory or the disk has; nothing at the run's start.
+std::optional<TakenUp> find_moment(Ranks& ranks, const MemorySnapshots& snapshots, const io::RunDirectory& directory) {
+  std::optional<MemorySnapshots::Found> memory = snapshots.newest();
+  std::optional<SavedRun> disk;
+  std::int64_t disk_step = -1;
+  if (ranks.is_first()) {
+    disk = on_disk(directory);
+    disk_step = disk ? disk->step : -1;
+  }
+  disk_step =
+      ByteReader(ranks.from_first(std::as_bytes(std::span<const std::int64_t>(&disk_step, 1)))).value<std::int64_t>();
+  if (!memory && disk_step < 0) {
+    return std::nullopt;
+  }
+  TakenUp taken_up;
+  if (memory && memory->step >= disk_step) {
+    taken_up.mark = memory->about.mark;
+    for (SavedRun& part : memory->parts) {
+      taken_up.pieces.push_back(std::move(part.piece));
+    }
+  } else if (disk) {
+    taken_up.mark = disk->mark;
+    taken_up.pieces.push_back(std::move(disk->piece));
+  }
+  return taken_up;
+}
+
+const char* reason_text(EndReason reason) {
+  switch (reason) {
+    case EndReason::completed:
+      return "completed";
+    case EndReason::fault:
+      return "fault";
+    case EndReason::interrupted:
+      return "interrupted";
+    case EndReason::output_error:
+      return "output_error";
+    case EndReason::reform:
+      return "reform";
+  }
+  return "";
+}
+
+ExitCode work_here(const WorkerOptions& options, Ranks& ranks) {
+  const std::string machine = machine_name();
+  coordinator::make_private_directory(coordinator::machine_memory(options.run_id, machine));
+  const Heartbeat heartbeat(coordinator::heartbeat_file(options.run_id, machine));
+  const WorkerLock lock(coordinator::worker_lock(options.run_id, machine));
+  const SignalWatch watch;
+  std::optional<coordinator::ControlClient> channel;
+  if (ranks.is_first()) {
+    channel.emplace(options.socket, options.world);
+  }
+  const nlohmann::json greeting = greeting_of(ranks, channel);
+  WorkerLink link(std::move(channel), greeting.at("events").get<std::vector<std::int64_t>>());
+  const io::RunDirectory directory(greeting.at("run").get<std::string>());
+  io::InputFiles files;
+  if (ranks.is_first()) {
+    const std::string packed = io::read_whole(directory.inputs());
+    files = io::InputFiles::unpack(std::as_bytes(std::span(packed.data(), packed.size())), directory.inputs());
+  }
+  const Case loaded = ranks.load(files.deck(), files);
+  MemorySnapshots snapshots(coordinator::snapshot_folder(options.run_id, machine), machine, ranks.communicator());
+  Drive run{ranks, loaded, directory, {}, find_moment(ranks, snapshots, directory), &link, &snapshots};
+  run.settings.world.writer_only = options.writer_only;
+  run.settings.hash_every = greeting.at("options").value("hash_every", std::int64_t{0});
+  run.settings.quiet = true;
+  RunEnd end;
+  const ExitCode code = drive(run, end);
+  link.send({{"event", "ended"},
+             {"reason", reason_text(end.reason)},
+             {"exit_code", static_cast<int>(code)},
+             {"message", end.message},
+             {"step", end.last_step}});
+  link.finish();
+  // The coordinator knows why; mpirun need not add its own words.
+  return ExitCode::done;
+}
+
+std::function<ExitCode()> declare(CLI::App& app) {
+  auto options = std::make_shared<WorkerOptions>();
+  app.add_option("--run-id", options->run_id, "The run")->required();
+  app.add_option("--world", options->world, "Number of the world")->required();
+  app.add_option("--socket", options->socket, "Where the coordinator listens")->required();
+  add_threads_option(app, options->threads);
+  app.add_flag("--writer-only", options->writer_only, "Rank 0 writes and does not compute");
+  return [options] { return with_ranks(options->threads, [&](Ranks& ranks) { return work_here(*options, ranks); }); };
+}
+
+}  // namespace
+
+const Command worker_command{"worker", "A rank of a cluster run", "  (started by \"fexp cluster run\")", declare, true};
+
+}  // namespace fexp::app

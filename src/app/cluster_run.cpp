@@ -25,6 +25,7 @@
 #include "coordinator/places.hpp"
 #include "coordinator/record.hpp"
 #include "io/atomic_file.hpp"
+#include "io/input_files.hpp"
 #include "io/output_error.hpp"
 #include "io/run_directory.hpp"
 #include "parallel/parallel.hpp"
@@ -183,9 +184,9 @@ ExitCode coordinate(const io::RunDirectory& directory, const ClusterRecord& reco
 }
 
 /// The deck as the run's machines will read it. Wrong input ends here, before anything is launched.
-std::string read_deck(const std::string& deck) {
+std::string read_deck(const std::string& deck, io::InputFiles& files) {
   std::string bytes;
-  parallel::with_threads(0, [&] { bytes = load_case(deck).deck_bytes; });
+  parallel::with_threads(0, [&] { bytes = load_case(deck, files).deck_bytes; });
   return bytes;
 }
 
@@ -207,7 +208,8 @@ void clear_earlier_cluster_run(const ClusterRunOptions& options) {
 ExitCode cluster_run(const ClusterRunOptions& options) {
   ClusterRecord record;
   ErrorList errors;
-  const std::string deck_bytes = read_deck(options.deck);
+  io::InputFiles files;
+  const std::string deck_bytes = read_deck(options.deck, files);
   record.machines = first_machines(options, errors);
   for (const std::string& event : options.events) {
     record.events.push_back(parse_event(event, errors));
@@ -216,6 +218,7 @@ ExitCode cluster_run(const ClusterRunOptions& options) {
   errors.throw_if_any();
   clear_earlier_cluster_run(options);
   const auto created = io::RunDirectory::create(options.deck, deck_bytes, options.out, options.force);
+  io::write_durably(created.inputs(), files.pack());
   const io::RunDirectory directory(fs::absolute(created.path()).lexically_normal());
   const coordinator::RunLock lock(directory.path());
   record.run_id = coordinator::new_run_id();
@@ -244,9 +247,6 @@ ExitCode cluster_resume(const ClusterResumeOptions& options) {
   if (record.state == "completed" || record.state == "fault") {
     errors.add({options.run}, fmt::format("the run is over ({})", record.state), "a run that was ended or lost",
                "begin a new one with \"fexp cluster run\"");
-  } else if (read_deck(record.options.deck) != io::read_whole(directory.deck())) {
-    errors.add({record.options.deck}, "the deck has changed since the run began", "",
-               fmt::format("put it back; {} is a copy of what it was", directory.deck().string()));
   }
   check_mpirun(errors);
   errors.throw_if_any();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <exception>
 #include <stdexcept>
 #include <thread>
 
@@ -125,26 +126,37 @@ bool Ranks::all(bool good) {
   return std::ranges::all_of(communicator_->all_gather(own, sizes), [](std::byte b) { return b != std::byte{}; });
 }
 
+void Ranks::on_first(const std::function<void()>& work) {
+  std::exception_ptr failed;
+  if (is_first()) {
+    try {
+      work();
+    } catch (...) {
+      failed = std::current_exception();
+    }
+  }
+  const bool good = all(!failed);
+  if (failed) {
+    std::rethrow_exception(failed);
+  }
+  if (!good) {
+    throw EndedElsewhere{};
+  }
+}
+
 Case Ranks::load(const std::filesystem::path& deck, io::InputFiles& files) {
   if (!several()) {
     return load_case(deck, files);
   }
-  if (is_first()) {
-    std::optional<Case> loaded;
-    std::vector<std::byte> packed;
-    try {
-      loaded.emplace(load_case(deck, files));
-      packed = files.pack();
-    } catch (...) {
-      static_cast<void>(from_first({}));
-      throw;
-    }
-    static_cast<void>(from_first(packed));
+  std::optional<Case> loaded;
+  std::vector<std::byte> packed;
+  on_first([&] {
+    loaded.emplace(load_case(deck, files));
+    packed = files.pack();
+  });
+  packed = from_first(packed);
+  if (loaded) {
     return *std::move(loaded);
-  }
-  const Bytes packed = from_first({});
-  if (packed.empty()) {
-    throw EndedElsewhere{};
   }
   files = io::InputFiles::unpack(packed, "the files of rank 0");
   return load_case(files.deck(), files);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,6 +43,9 @@ class Ranks {
   [[nodiscard]] Bytes from_first(std::span<const std::byte> bytes);
   /// True on all ranks when it is on all.
   [[nodiscard]] bool all(bool good);
+
+  /// Runs `work` on rank 0 alone. What it throws is thrown there, and EndedElsewhere on the others.
+  void on_first(const std::function<void()>& work);
 
   /// The case on all ranks; the files are read on rank 0 alone. Throws InputErrors there, and EndedElsewhere on others.
   [[nodiscard]] Case load(const std::filesystem::path& deck, io::InputFiles& files);

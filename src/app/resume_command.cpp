@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -73,21 +72,7 @@ Found find(const io::RunDirectory& directory) {
 ExitCode resume_here(const ResumeOptions& options, Ranks& ranks) {
   const io::RunDirectory directory(options.run);
   Found found;
-  std::exception_ptr failed;
-  if (ranks.is_first()) {
-    try {
-      found = find(directory);
-    } catch (...) {
-      failed = std::current_exception();
-    }
-  }
-  const bool good = ranks.all(!failed);
-  if (failed) {
-    std::rethrow_exception(failed);
-  }
-  if (!good) {
-    throw EndedElsewhere{};
-  }
+  ranks.on_first([&] { found = find(directory); });
   const SignalWatch watch;
   const Case loaded = ranks.load(found.files.deck(), found.files);
   TakenUp taken_up;

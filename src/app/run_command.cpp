@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <exception>
 #include <map>
 #include <memory>
 #include <string>
@@ -39,21 +38,7 @@ ExitCode run_here(const RunOptions& options, Ranks& ranks) {
   const Case loaded = ranks.load(options.deck, files);
   const SignalWatch watch;
   io::RunDirectory directory("");
-  std::exception_ptr failed;
-  if (ranks.is_first()) {
-    try {
-      directory = make_directory(options, loaded, files);
-    } catch (...) {
-      failed = std::current_exception();
-    }
-  }
-  const bool made = ranks.all(!failed);
-  if (failed) {
-    std::rethrow_exception(failed);
-  }
-  if (!made) {
-    throw EndedElsewhere{};
-  }
+  ranks.on_first([&] { directory = make_directory(options, loaded, files); });
   RunEnd end;
   return drive({ranks, loaded, directory, options.drive}, end);
 }

@@ -145,10 +145,10 @@ ExitCode work_here(const WorkerOptions& options, Ranks& ranks) {
   WorkerLink link(std::move(channel), greeting.at("events").get<std::vector<std::int64_t>>());
   const io::RunDirectory directory(greeting.at("run").get<std::string>());
   io::InputFiles files;
-  if (ranks.is_first()) {
+  ranks.on_first([&] {
     const std::string packed = io::read_whole(directory.inputs());
     files = io::InputFiles::unpack(std::as_bytes(std::span(packed.data(), packed.size())), directory.inputs());
-  }
+  });
   const Case loaded = ranks.load(files.deck(), files);
   MemorySnapshots snapshots(coordinator::snapshot_folder(options.run_id, machine), machine, ranks.communicator());
   Drive run{ranks, loaded, directory, {}, find_moment(ranks, snapshots, directory), &link, &snapshots};

@@ -64,7 +64,7 @@ Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, Wo
   critical_ = smallest_critical_step();
   start_ = sum_of_diagnostics();
   extremes_.fewest_islands = static_cast<Index>(islands_.size());
-  load_.busy_seconds.assign(world_.machines.size(), 0.0);
+  begin_load();
 }
 
 EpochReport Simulation::present() const {
@@ -180,7 +180,6 @@ void Simulation::put_back() {
 }
 
 EpochReport Simulation::run_epoch(double target, std::int64_t hash_every, const Requests& requests) {
-  const auto start = Clock::now();
   EpochReport report;
   Attempt attempt;
   attempt.most_steps = model_.run.epoch_steps;
@@ -216,7 +215,6 @@ EpochReport Simulation::run_epoch(double target, std::int64_t hash_every, const 
   report.critical = critical_;
   judge(report);
   ++load_.epochs;
-  load_.seconds += seconds_since(start);
   return report;
 }
 

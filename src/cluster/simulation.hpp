@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <span>
@@ -32,7 +33,7 @@ struct World {
   [[nodiscard]] static World alone();
 };
 
-/// How the work went since this world began; the same on every rank.
+/// How the work went since this world began.
 struct WorldLoad {
   std::vector<double> busy_seconds;  ///< Spent stepping, shape [machines]
   double waiting_seconds{};          ///< Spent in the communicator, of the rank that spent most
@@ -119,6 +120,7 @@ class Simulation {
   void read_piece(std::span<const std::byte> piece, Bytes& run, std::vector<Index>& held);
   [[nodiscard]] std::vector<int> learn_holders(const std::vector<Index>& held, Bytes& run);
   void place_the_homeless();
+  void begin_load();
   void pack_run(ByteWriter& out) const;
 
   [[nodiscard]] int rank_of(Index body) const;
@@ -146,6 +148,7 @@ class Simulation {
   std::vector<double> island_seconds_;  // [islands]: cost in the last epoch [seconds]
   PlacementLedger ledger_;
   WorldLoad load_;
+  std::chrono::steady_clock::time_point began_;
   Traffic told_;                  ///< Traffic that other ranks know of
   std::int64_t moved_bytes_{};    ///< Not told yet
   std::string pending_reason_;    ///< Of the next placement, besides what the islands do

@@ -156,7 +156,7 @@ Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, Wo
   moved_bytes_ += ship_bodies(*world_.communicator, model_, shipments, state_);
   find_own_bodies();
   critical_ = smallest_critical_step();
-  load_.busy_seconds.assign(world_.machines.size(), 0.0);
+  begin_load();
 }
 
 /// Takes a piece's bodies into the state; `run` becomes or must be what the piece says of the run.

@@ -14,8 +14,8 @@ namespace fexp::cluster {
 
 namespace {
 
-std::string counted(std::size_t count, const char* one) {
-  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+std::string counted(std::size_t count, const char* one, const char* several) {
+  return fmt::format("{} {}", count, count == 1 ? one : several);
 }
 
 /// "2 islands merged, 1 split off" and the like.
@@ -25,15 +25,15 @@ std::string reason_of(const std::vector<Move>& moves, const std::vector<Island>&
     return "start";
   }
   std::string text = before.size() == after.size()
-                         ? counted(after.size(), "island")
-                         : fmt::format("{} become {}", counted(before.size(), "island"), after.size());
+                         ? counted(after.size(), "island", "islands")
+                         : fmt::format("{} become {}", counted(before.size(), "island", "islands"), after.size());
   std::vector<std::pair<MoveReason, std::size_t>> counts;
   for (const Move& move : moves) {
     const auto found = std::ranges::find(counts, move.reason, &std::pair<MoveReason, std::size_t>::first);
     ++(found == counts.end() ? counts.emplace_back(move.reason, 0) : *found).second;
   }
   for (const auto& [reason, count] : counts) {
-    text += fmt::format(", {} moved: {}", counted(count, "body"), text_of(reason));
+    text += fmt::format(", {} moved: {}", counted(count, "body", "bodies"), text_of(reason));
   }
   return text;
 }
@@ -190,7 +190,7 @@ RankRecord Simulation::share(const RankRecord& own, std::span<const double> isla
   record.moved_bytes = std::exchange(moved_bytes_, 0);
   record.messages = traffic.messages - told_.messages;
   record.message_bytes = traffic.bytes - told_.bytes;
-  record.waiting_seconds = traffic.seconds;
+  record.waiting_seconds = traffic.seconds - told_.seconds;
   told_ = traffic;
   ByteWriter out;
   out.value(record);
@@ -222,7 +222,7 @@ RankRecord Simulation::share(const RankRecord& own, std::span<const double> isla
   ledger_.add_bytes(sum.moved_bytes);
   load_.messages += sum.messages;
   load_.message_bytes += sum.message_bytes;
-  load_.waiting_seconds = sum.waiting_seconds;
+  load_.waiting_seconds += sum.waiting_seconds;
   return sum;
 }
 
@@ -279,8 +279,17 @@ void Simulation::collect() {
   collect(all);
 }
 
+/// What was said while the world was set up does not count.
+void Simulation::begin_load() {
+  load_ = {};
+  load_.busy_seconds.assign(world_.machines.size(), 0.0);
+  began_ = std::chrono::steady_clock::now();
+  told_ = world_.communicator->traffic();
+}
+
 WorldLoad Simulation::load() const {
   WorldLoad load = load_;
+  load.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   std::vector<MachineIndex> owner;
   for (const Island& island : islands_) {
     owner.push_back(owner_[at(island.bodies.front())]);

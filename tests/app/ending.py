@@ -55,7 +55,7 @@ class Interrupted(Ending):
         output, error = process.communicate(timeout=60)
         self.assertEqual(process.returncode, code, error)
         self.assertIn("interrupted at time", error)
-        self.assertIn("run the deck again", error)
+        self.assertIn("To go on: fexp resume", error)
         summary = json.loads(output)
         self.assertEqual((summary["completed"], summary["exit_reason"]), (False, "interrupted"))
         self.check_readable(summary["frames"])

@@ -39,7 +39,11 @@ std::int64_t step_of(const fs::path& path) {
 struct Moment {
   std::int64_t step{};
   std::vector<std::string> parts;
-  friend auto operator<=>(const Moment&, const Moment&) = default;
+
+  /// The latest first.
+  friend bool operator<(const Moment& a, const Moment& b) {
+    return a.step != b.step ? a.step > b.step : a.parts < b.parts;
+  }
 };
 
 void pack(const Moment& moment, const std::string& part, ByteWriter& out) {
@@ -192,8 +196,9 @@ std::optional<MemorySnapshots::Found> MemorySnapshots::newest() const {
       moments[moment].try_emplace(part, static_cast<int>(r));
     }
   }
-  for (auto moment = moments.rbegin(); moment != moments.rend(); ++moment) {
-    const auto& [about, holders] = *moment;
+  for (const auto& moment : moments) {
+    const Moment& about = moment.first;
+    const std::map<std::string, int>& holders = moment.second;
     if (!std::ranges::all_of(about.parts, [&](const std::string& part) { return holders.contains(part); })) {
       continue;
     }

@@ -13,7 +13,7 @@ class SaveClock {
   explicit SaveClock(double least_seconds) : least_(least_seconds) {}
 
   [[nodiscard]] bool due() const {
-    return std::chrono::duration<double>(Clock::now() - last_).count() >= std::max(least_, most_seldom_ * cost_);
+    return std::chrono::duration<double>(Clock::now() - last_).count() >= std::max(least_, times_of_cost * cost_);
   }
   /// It has been saved, which took so long [s].
   void saved(double seconds) {
@@ -27,7 +27,7 @@ class SaveClock {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr double most_seldom_ = 50.0;
+  static constexpr double times_of_cost = 50.0;
   double least_;
   double cost_{};
   double total_{};

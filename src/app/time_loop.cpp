@@ -178,7 +178,7 @@ void Loop::tell_status() {
   const cluster::Simulation& simulation = parts_.simulation;
   const cluster::WorldLoad load = simulation.load();
   const double time = simulation.state().time, duration = simulation.model().run.duration;
-  const double done = static_cast<double>(simulation.state().step - end_.first_step);
+  const auto done = static_cast<double>(simulation.state().step - end_.first_step);
   nlohmann::json machines = nlohmann::json::array();
   for (std::size_t m = 0; m < simulation.world().machines.size(); ++m) {
     const cluster::Machine& machine = simulation.world().machines[m];

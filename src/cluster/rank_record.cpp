@@ -46,7 +46,7 @@ void RankRecord::add(const RankRecord& other) {
   messages += other.messages;
   message_bytes += other.message_bytes;
   busy_seconds = std::max(busy_seconds, other.busy_seconds);
-  waiting_seconds = std::max(waiting_seconds, other.waiting_seconds);
+  waiting_seconds += other.waiting_seconds;
 }
 
 }  // namespace fexp::cluster

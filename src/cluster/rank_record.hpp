@@ -28,7 +28,7 @@ struct RankRecord {
   std::int64_t messages{};     ///< Sent since the record before
   std::int64_t message_bytes{};
   double busy_seconds{};     ///< Spent stepping
-  double waiting_seconds{};  ///< Spent in the communicator
+  double waiting_seconds{};  ///< Spent in the communicator since the record before; of several ranks the sum
 
   void add(const solve::IslandReport& island);
   void add(const RankRecord& other);

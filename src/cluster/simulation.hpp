@@ -36,7 +36,7 @@ struct World {
 /// How the work went since this world began.
 struct WorldLoad {
   std::vector<double> busy_seconds;  ///< Spent stepping, shape [machines]
-  double waiting_seconds{};          ///< Spent in the communicator, of the rank that spent most
+  double waiting_seconds{};          ///< Spent in the communicator, mean of the ranks
   double seconds{};                  ///< In all
   std::int64_t epochs{};
   std::int64_t messages{};  ///< Of all ranks

@@ -222,7 +222,7 @@ RankRecord Simulation::share(const RankRecord& own, std::span<const double> isla
   ledger_.add_bytes(sum.moved_bytes);
   load_.messages += sum.messages;
   load_.message_bytes += sum.message_bytes;
-  load_.waiting_seconds += sum.waiting_seconds;
+  load_.waiting_seconds += sum.waiting_seconds / world_.communicator->size();
   return sum;
 }
 

@@ -89,7 +89,7 @@ struct Summary {
   struct Network {
     double messages_per_epoch{};
     double bytes_per_epoch{};
-    double waiting_share{};         ///< Of its time, of the rank that waited most [-]
+    double waiting_share{};         ///< Of its time, mean of the ranks [-]
     double snapshot_share{};        ///< Of its time, spent saving the state [-]
     double imbalance{};             ///< Work of the busiest machine over the mean, less 1 [-]
     double largest_island_share{};  ///< Of the work [-]

@@ -4,8 +4,8 @@
 
 usage: bench/run.py [--machine NAME] [--repetitions N] [--filter REGEX] [benchmark ...]
 
-Without names runs steps, search, memory and startup. `spread` is (largest - smallest) / median of the repetitions: on a
-machine with other work compare ratios, and CPU times before wall times.
+Without names runs steps, search, memory, startup and placement. `spread` is (largest - smallest) / median of the
+repetitions: on a machine with other work compare ratios, and CPU times before wall times.
 """
 import argparse
 import csv
@@ -20,7 +20,9 @@ from statistics import median
 
 root = Path(__file__).resolve().parent.parent
 build = root / "build" / "bench"
-all_benchmarks = ["steps", "search", "memory", "startup"]
+all_benchmarks = ["steps", "search", "memory", "startup", "placement"]
+# Largest resident memory is the process's, so every case of these has a process of its own; it hardly varies.
+own_processes = ["memory", "placement"]
 # What Google Benchmark reports of every run beside the counters.
 own_keys = {"name", "family_index", "per_family_instance_index", "run_name", "run_type", "repetitions",
             "repetition_index", "threads", "iterations", "real_time", "cpu_time", "time_unit"}
@@ -58,9 +60,8 @@ def run(program, names, repetitions):
 
 def reports(name, names, repetitions):
     program = build / "bench" / f"bench_{name}"
-    if name != "memory":
+    if name not in own_processes:
         return run(program, names, repetitions)
-    # The largest resident memory is the process's, so every case has its own; it hardly varies.
     listed = subprocess.run([program, "--benchmark_list_tests", f"--benchmark_filter={names}"], check=True,
                             capture_output=True, text=True).stdout.split()
     return [report for case in listed for report in run(program, f"^{re.escape(case)}$", 1)]
@@ -85,12 +86,13 @@ def rows_of(found):
         case, threads = case_of(run_name)
         scale = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}[repeated[0]["time_unit"]]
         seconds = [scale * r["real_time"] for r in repeated]
-        row = {"case": case, "elements": int(repeated[0]["triangles"])}
+        size = "triangles" if "triangles" in repeated[0] else "bodies"
+        row = {"case": case, "elements" if size == "triangles" else size: int(repeated[0][size])}
         if threads is not None:
             row["threads"] = threads
         row |= {"repetitions": len(repeated), "seconds": median(seconds),
                 "spread": (max(seconds) - min(seconds)) / median(seconds)}
-        row |= {key: median(r[key] for r in repeated) for key in repeated[0] if key not in own_keys | {"triangles"}}
+        row |= {key: median(r[key] for r in repeated) for key in repeated[0] if key not in own_keys | {size}}
         yield row
 
 
@@ -136,7 +138,7 @@ def describe(folder, loads):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("benchmark", nargs="*", help="steps, search, memory or startup")
+    parser.add_argument("benchmark", nargs="*", help="steps, search, memory, startup or placement")
     parser.add_argument("--machine", default=machine_name(), help="name of the folder under bench/results")
     parser.add_argument("--repetitions", type=int, default=3)
     parser.add_argument("--filter", default=".", help="only cases that match; prints and writes nothing")

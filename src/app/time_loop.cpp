@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <functional>
+#include <vector>
 
 #include "app/balance_text.hpp"
 #include "app/schedule.hpp"
@@ -180,20 +181,20 @@ void Loop::tell_status() {
   const double time = simulation.state().time, duration = simulation.model().run.duration;
   const auto done = static_cast<double>(simulation.state().step - end_.first_step);
   nlohmann::json machines = nlohmann::json::array();
+  std::vector<std::int64_t> bodies(simulation.world().machines.size(), 0), elements(bodies);
+  for (Index b = 0; b < simulation.model().body_count(); ++b) {
+    if (const cluster::MachineIndex m = simulation.owner()[at(b)]; m != cluster::no_machine) {
+      ++bodies[static_cast<std::size_t>(m)];
+      elements[static_cast<std::size_t>(m)] += simulation.model().bodies[at(b)].elements.size();
+    }
+  }
   for (std::size_t m = 0; m < simulation.world().machines.size(); ++m) {
     const cluster::Machine& machine = simulation.world().machines[m];
-    std::int64_t bodies = 0, elements = 0;
-    for (Index b = 0; b < simulation.model().body_count(); ++b) {
-      if (simulation.owner()[at(b)] == static_cast<cluster::MachineIndex>(m)) {
-        ++bodies;
-        elements += simulation.model().bodies[at(b)].elements.size();
-      }
-    }
     if (machine.present()) {
       machines.push_back({{"name", machine.name},
                           {"threads", machine.threads},
-                          {"bodies", bodies},
-                          {"elements", elements},
+                          {"bodies", bodies[m]},
+                          {"elements", elements[m]},
                           {"load", load.seconds > 0.0 ? load.busy_seconds[m] / load.seconds : 0.0}});
     }
   }

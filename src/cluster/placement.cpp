@@ -2,24 +2,25 @@
 #include "cluster/placement.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
+#include <iterator>
 #include <queue>
+#include <set>
 #include <utility>
 
 namespace fexp::cluster {
 
 namespace {
 
-/// measured_cost leaves islands where they are while the busiest machine is no more than this above the mean.
+/// measured_cost leaves islands where they are while the busiest machine is no more than this above the mean, ...
 constexpr double tolerated_imbalance = 0.1;
-/// One more machine that saves less than this part of the time is not worth having.
+/// ... and otherwise moves some until it is no more than this above the mean, so that noise does not move them again.
+constexpr double aimed_imbalance = 0.05;
+/// What saves less than this part of the time is not worth doing.
 constexpr double worth_having = 0.01;
-/// Islands that balance() moves at most, for each machine.
-constexpr std::size_t rounds_per_machine = 4;
 
-/// Loads of the machines, and the least loaded one in logarithmic time. Loads are divided by speeds, but under the
-/// paper's rule, which counts elements alone.
+/// Loads of the machines, and the least and the most loaded one in logarithmic time. Loads are divided by speeds, but
+/// under the paper's rule, which counts elements alone.
 class Loads {
  public:
   Loads(std::span<const Machine> machines, PlacementRule rule)
@@ -37,42 +38,40 @@ class Loads {
   [[nodiscard]] double with(MachineIndex machine, double weight) const {
     return (load_[index(machine)] + weight) / speed(machine);
   }
+  /// The weight that makes both machines equally loaded when it moves from one to the other.
+  [[nodiscard]] double evening(MachineIndex from, MachineIndex to) const {
+    return (load_[index(from)] * speed(to) - load_[index(to)] * speed(from)) / (speed(from) + speed(to));
+  }
   /// The present machine with the least load; ties go to the lowest.
-  [[nodiscard]] MachineIndex least() {
-    while (queue_.top().first != of(queue_.top().second)) {
-      queue_.pop();  // Its load has changed since.
-    }
-    return queue_.top().second;
-  }
+  [[nodiscard]] MachineIndex least() { return first_of(ascending_, 1.0); }
   /// The present machine with the most load; ties go to the lowest.
-  [[nodiscard]] MachineIndex most() const {
-    MachineIndex found = no_machine;
-    for (std::size_t m = 0; m < load_.size(); ++m) {
-      const auto machine = static_cast<MachineIndex>(m);
-      if (present(machine) && (found == no_machine || of(machine) > of(found))) {
-        found = machine;
-      }
-    }
-    return found;
-  }
+  [[nodiscard]] MachineIndex most() { return first_of(descending_, -1.0); }
   [[nodiscard]] bool present(MachineIndex machine) const {
     return machine != no_machine && machines_[index(machine)].present();
   }
 
  private:
-  using Entry = std::pair<double, MachineIndex>;
+  using Queue = std::priority_queue<std::pair<double, MachineIndex>, std::vector<std::pair<double, MachineIndex>>,
+                                    std::greater<>>;
   static std::size_t index(MachineIndex machine) { return static_cast<std::size_t>(machine); }
   [[nodiscard]] double speed(MachineIndex machine) const { return by_speed_ ? machines_[index(machine)].speed : 1.0; }
   void enter(MachineIndex machine) {
     if (present(machine)) {
-      queue_.emplace(of(machine), machine);
+      ascending_.emplace(of(machine), machine);
+      descending_.emplace(-of(machine), machine);
     }
+  }
+  MachineIndex first_of(Queue& queue, double sign) const {
+    while (queue.top().first != sign * of(queue.top().second)) {
+      queue.pop();  // Its load has changed since.
+    }
+    return queue.top().second;
   }
 
   std::span<const Machine> machines_;
   std::vector<double> load_;
   bool by_speed_;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+  Queue ascending_, descending_;
 };
 
 /// How an island came about.
@@ -175,12 +174,16 @@ class Placer {
 
   /// Moves the island's bodies to a machine and counts its weight there.
   void settle(const Candidate& c, MachineIndex machine, MoveReason reason) {
+    assign(c, machine, reason);
+    loads_.add(machine, c.weight);
+  }
+
+  void assign(const Candidate& c, MachineIndex machine, MoveReason reason) {
     for (const Index body : task_.islands[c.island].bodies) {
       const MachineIndex from = task_.owner[at(body)];
       reason_[at(body)] = from != no_machine && !loads_.present(from) ? MoveReason::machine_left : reason;
       placement_.owner[at(body)] = machine;
     }
-    loads_.add(machine, c.weight);
   }
 
   void place_piece(const Candidate& c, std::vector<bool>& first_stays) {
@@ -196,40 +199,68 @@ class Placer {
     }
   }
 
-  /// Takes islands from the busiest machine to the least busy one while that helps.
+  /// Weights and numbers of candidates that a machine holds, the lightest first.
+  using Held = std::set<std::pair<double, std::size_t>>;
+
+  /// Takes islands from the busiest machine to the least busy one until the loads are even, or it no longer helps.
   void balance() {
-    std::vector<std::vector<const Candidate*>> held(task_.machines.size());
     double sum = 0.0, speed = 0.0;
     for (const Candidate& c : candidates_) {
-      held[static_cast<std::size_t>(owner_of(c))].push_back(&c);
       sum += c.weight;
     }
     for (const Machine& machine : task_.machines) {
       speed += machine.present() ? machine.speed : 0.0;
     }
-    const double tolerated = (1.0 + tolerated_imbalance) * sum / speed;
-    for (std::size_t round = 0; round < rounds_per_machine * task_.machines.size(); ++round) {
-      const MachineIndex busiest = loads_.most(), target = loads_.least();
-      const double high = loads_.of(busiest);
-      auto& islands = held[static_cast<std::size_t>(busiest)];
-      // The island that leaves the two machines most alike.
-      auto best = islands.end();
-      double best_high = (1.0 - worth_having) * high;
-      for (auto c = islands.begin(); high > tolerated && c != islands.end(); ++c) {
-        const double after = std::max(loads_.with(target, (*c)->weight), loads_.with(busiest, -(*c)->weight));
-        if (after < best_high) {
-          best_high = after;
-          best = c;
-        }
-      }
-      if (best == islands.end()) {
-        return;
-      }
-      loads_.add(busiest, -(*best)->weight);
-      settle(**best, target, MoveReason::balance);
-      held[static_cast<std::size_t>(target)].push_back(*best);
-      islands.erase(best);
+    const double high = loads_.of(loads_.most());
+    if (high <= (1.0 + tolerated_imbalance) * sum / speed) {
+      return;
     }
+    std::vector<Held> held(task_.machines.size());
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+      held[static_cast<std::size_t>(owner_of(candidates_[k]))].emplace(candidates_[k].weight, k);
+    }
+    std::vector<std::pair<std::size_t, MachineIndex>> changes;
+    // Each change makes two machines more alike, so this ends; the number of rounds is bounded for rounding's sake.
+    while (changes.size() < 2 * candidates_.size() &&
+           loads_.of(loads_.most()) > (1.0 + aimed_imbalance) * sum / speed) {
+      const MachineIndex busiest = loads_.most(), target = loads_.least();
+      Held& islands = held[static_cast<std::size_t>(busiest)];
+      const auto best = best_to_move(islands, busiest, target);
+      if (best == islands.end()) {
+        break;
+      }
+      loads_.add(busiest, -best->first);
+      loads_.add(target, best->first);
+      changes.emplace_back(best->second, target);
+      held[static_cast<std::size_t>(target)].insert(islands.extract(best));
+    }
+    if (loads_.of(loads_.most()) < (1.0 - worth_having) * high) {
+      for (const auto& [candidate, machine] : changes) {
+        assign(candidates_[candidate], machine, MoveReason::balance);
+      }
+    }
+  }
+
+  /// The island that leaves the two machines most alike; none when every one would leave them less alike than now.
+  [[nodiscard]] Held::const_iterator best_to_move(const Held& islands, MachineIndex from, MachineIndex to) const {
+    auto best = islands.end();
+    double best_high = loads_.of(from);
+    const auto consider = [&](Held::const_iterator c) {
+      const double high = std::max(loads_.with(to, c->first), loads_.with(from, -c->first));
+      if (high < best_high) {
+        best_high = high;
+        best = c;
+      }
+    };
+    // The nearest below and above what would even them out; of equally heavy ones the first in the order of the rule.
+    const auto above = islands.lower_bound({loads_.evening(from, to), 0});
+    if (above != islands.begin()) {
+      consider(islands.lower_bound({std::prev(above)->first, 0}));
+    }
+    if (above != islands.end()) {
+      consider(above);
+    }
+    return best;
   }
 
   [[nodiscard]] MachineIndex owner_of(const Candidate& c) const {
@@ -243,6 +274,39 @@ class Placer {
   std::vector<MoveReason> reason_;  // [bodies]: of the last change
   Placement placement_;
 };
+
+/// Load of the busiest of `count` equal machines when each cost, the largest first, goes to the least loaded one:
+/// within a third of the best [GRA69].
+double longest_load(const std::vector<double>& descending, int count) {
+  std::priority_queue<double, std::vector<double>, std::greater<>> loads;
+  for (int m = 0; m < count; ++m) {
+    loads.push(0.0);
+  }
+  double longest = 0.0;
+  for (const double one : descending) {
+    const double load = loads.top() + one;
+    loads.pop();
+    loads.push(load);
+    longest = std::max(longest, load);
+  }
+  return longest;
+}
+
+/// Machines that it takes to hold the costs with no more than `room` on each: each cost, the largest first, goes to the
+/// fullest machine that has room for it.
+int fewest_bins(const std::vector<double>& descending, double room) {
+  std::multiset<double> free;
+  for (const double one : descending) {
+    auto bin = free.lower_bound(one);
+    double left = room;
+    if (bin != free.end()) {
+      left = *bin;
+      free.erase(bin);
+    }
+    free.insert(left - one);
+  }
+  return static_cast<int>(std::max<std::size_t>(free.size(), 1));
+}
 
 }  // namespace
 
@@ -273,26 +337,10 @@ BalanceReport judge_balance(std::span<const double> cost, std::span<const Machin
   const double mean_speed = speed / present;
   report.largest_share = largest / sum;
   report.imbalance = busiest / (sum / speed) - 1.0;
-  // Largest first on to the least loaded of n machines of the mean speed: within a third of the best [GRA69].
   std::vector<double> sorted(cost.begin(), cost.end());
   std::sort(sorted.begin(), sorted.end(), std::greater<>());
-  const auto time_with = [&](int count) {
-    std::priority_queue<double, std::vector<double>, std::greater<>> loads;
-    for (int m = 0; m < count; ++m) {
-      loads.push(0.0);
-    }
-    double longest = 0.0;
-    for (const double one : sorted) {
-      const double load = loads.top() + one / mean_speed;
-      loads.pop();
-      loads.push(load);
-      longest = std::max(longest, load);
-    }
-    return longest;
-  };
-  report.with_one_more = time_with(present + 1) / busiest;
-  // No number of machines is faster than the largest island alone.
-  report.useful_machines = std::max(1, static_cast<int>(std::ceil((1.0 - worth_having) * sum / largest)));
+  report.with_one_more = std::min(1.0, longest_load(sorted, present + 1) / mean_speed / busiest);
+  report.useful_machines = fewest_bins(sorted, largest / (1.0 - worth_having));
   return report;
 }
 

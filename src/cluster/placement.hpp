@@ -27,8 +27,8 @@ struct Machine {
 
 /// fewest_elements: the paper's rule. Islands go to the machine with the fewest elements, and are looked at again only
 /// when they merge, split, or their machine leaves. measured_cost: the same with the measured cost of each island
-/// instead of its elements and loads divided by speeds; besides, an island moves when that makes the busiest machine
-/// clearly less busy.
+/// instead of its elements and loads divided by speeds; besides, when the busiest machine is a tenth above the mean,
+/// islands move from the busiest to the least busy ones.
 enum class PlacementRule : std::uint8_t { fewest_elements, measured_cost };
 
 enum class MoveReason : std::uint8_t { start, merge, split, machine_left, balance };
@@ -63,8 +63,7 @@ struct Placement {
 /// 1. An island that was there before stays, unless its machine has left.
 /// 2. A merged island gathers on the machine that holds most of its elements; ties go to the lowest machine.
 /// 3. Of the pieces that islands on one machine have split into, the first (most elements, then lowest body) stays.
-/// Each
-///    other goes to the least loaded machine if that stays less loaded than the one it leaves was.
+///    Each other goes to the least loaded machine if that stays less loaded than the one it leaves was.
 /// 4. Islands without a machine, most elements first, go to the least loaded one; ties go to the lowest.
 [[nodiscard]] Placement place_islands(const PlacementTask& task);
 
@@ -73,7 +72,8 @@ struct BalanceReport {
   double largest_share{};  ///< Cost of the most costly island over that of all
   double imbalance{};      ///< Cost of the busiest machine over the mean of all, less 1
   double with_one_more{};  ///< Predicted time with one more machine over the present one
-  int useful_machines{1};  ///< Beyond this many, more machines save less than a hundredth
+  /// So many equal machines do the work in the time of the largest island, give or take a hundredth: more do not help.
+  int useful_machines{1};
 };
 
 /// `cost`: of each island [time], `owner`: its machine. Speeds are taken into account.

@@ -109,7 +109,8 @@ class Simulation {
   RankRecord advance_islands(const Attempt& attempt, std::int64_t hash_every, const Requests& requests,
                              EpochReport& report);
   RankRecord share(const RankRecord& own, std::span<const double> island_seconds);
-  void take_in(int rank, ByteReader& in, std::vector<double>& island_seconds);
+  void take_in(std::span<const std::size_t> islands, ByteReader& in);
+  void scale_cost(std::span<const std::size_t> islands, double cost);
   void share_hashes(EpochReport& report);
   Verdict guard(Attempt& attempt, const RankRecord& record, bool may_retry, Fault& fault);
   void put_back();
@@ -145,7 +146,7 @@ class Simulation {
   std::vector<Island> islands_;  ///< Of all machines
   std::vector<std::unique_ptr<solve::IslandSolver>> solvers_;  // [islands]: of this machine's; others null
   std::vector<Index> island_of_body_;
-  std::vector<double> island_seconds_;  // [islands]: cost in the last epoch [seconds]
+  std::vector<double> island_cost_;  // [islands]: time of the last epoch on one machine of speed 1 [s]
   PlacementLedger ledger_;
   WorldLoad load_;
   std::chrono::steady_clock::time_point began_;

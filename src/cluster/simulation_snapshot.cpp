@@ -106,7 +106,7 @@ void Simulation::unpack_run(ByteReader& in) {
   std::erase_if(islands_, [](const Island& island) { return island.bodies.empty(); });
   solvers_.clear();
   solvers_.resize(islands_.size());
-  island_seconds_.assign(islands_.size(), 0.0);
+  island_cost_.assign(islands_.size(), 0.0);
 }
 
 /// Machines keep their places in the list; those that are new come after them.

@@ -71,16 +71,14 @@ void Simulation::place(const std::vector<Island>& islands) {
   }
   std::vector<double> weight = elements_of(model_);
   if (measured) {
-    // What an island took is spread over its bodies by their elements, and counted as work at the speed of its machine.
+    // What an island took is spread over its bodies by their elements.
     for (std::size_t i = 0; i < islands_.size(); ++i) {
       double elements = 0.0;
       for (const Index body : islands_[i].bodies) {
         elements += weight[at(body)];
       }
-      const MachineIndex owner = owner_[at(islands_[i].bodies.front())];
-      const double work = island_seconds_[i] * world_.machines[static_cast<std::size_t>(owner)].speed;
       for (const Index body : islands_[i].bodies) {
-        weight[at(body)] *= work / elements;
+        weight[at(body)] *= island_cost_[i] / elements;
       }
     }
   }
@@ -129,7 +127,7 @@ void Simulation::find_own_bodies() {
 void Simulation::take_up_solvers(std::vector<Island> islands) {
   find_own_bodies();
   std::vector<std::unique_ptr<solve::IslandSolver>> solvers(islands.size());
-  std::vector<double> seconds(islands.size(), 0.0);
+  std::vector<double> cost(islands.size(), 0.0);
   std::vector<Index> fresh;
   // Both lists are in ascending order of their islands' lowest bodies.
   std::size_t old = 0;
@@ -140,7 +138,7 @@ void Simulation::take_up_solvers(std::vector<Island> islands) {
     }
     const bool same = old < islands_.size() && islands_[old] == islands[i];
     if (same) {
-      seconds[i] = island_seconds_[old];
+      cost[i] = island_cost_[old];
     }
     if (!is_own(bodies.front())) {
       continue;
@@ -154,7 +152,7 @@ void Simulation::take_up_solvers(std::vector<Island> islands) {
   }
   islands_ = std::move(islands);
   solvers_ = std::move(solvers);
-  island_seconds_ = std::move(seconds);
+  island_cost_ = std::move(cost);
   parallel::for_each(static_cast<Index>(fresh.size()), 1, [&](Index k) {
     const std::size_t i = at(fresh[at(k)]);
     solvers_[i] = std::make_unique<solve::IslandSolver>();
@@ -206,18 +204,28 @@ RankRecord Simulation::share(const RankRecord& own, std::span<const double> isla
     }
   }
   const Bytes all = world_.communicator->all_gather(out.bytes(), sizes);
+  std::vector<std::vector<std::size_t>> held(sizes.size());  // [ranks]: islands
+  for (std::size_t i = 0; i < islands_.size(); ++i) {
+    held[static_cast<std::size_t>(rank_of(islands_[i].bodies.front()))].push_back(i);
+  }
+  std::vector<RankRecord> records(sizes.size());
   RankRecord sum;
   std::size_t offset = 0;
-  for (int r = 0; r < world_.communicator->size(); ++r) {
-    const std::size_t size = sizes[static_cast<std::size_t>(r)];
-    ByteReader in(std::span<const std::byte>(all).subspan(offset, size));
-    const auto one = in.value<RankRecord>();
-    sum.add(one);
-    take_in(r, in, island_seconds_);
-    for (std::size_t m = 0; m < world_.machines.size() && m < load_.busy_seconds.size(); ++m) {
-      load_.busy_seconds[m] += world_.machines[m].rank == r ? one.busy_seconds : 0.0;
+  for (std::size_t r = 0; r < sizes.size(); ++r) {
+    ByteReader in(std::span<const std::byte>(all).subspan(offset, sizes[r]));
+    records[r] = in.value<RankRecord>();
+    sum.add(records[r]);
+    take_in(held[r], in);
+    offset += sizes[r];
+  }
+  for (std::size_t m = 0; m < world_.machines.size(); ++m) {
+    if (const Machine& machine = world_.machines[m]; machine.present()) {
+      const double seconds = records[static_cast<std::size_t>(machine.rank)].busy_seconds;
+      scale_cost(held[static_cast<std::size_t>(machine.rank)], seconds * machine.speed);
+      if (m < load_.busy_seconds.size()) {
+        load_.busy_seconds[m] += seconds;
+      }
     }
-    offset += size;
   }
   ledger_.add_bytes(sum.moved_bytes);
   load_.messages += sum.messages;
@@ -226,19 +234,28 @@ RankRecord Simulation::share(const RankRecord& own, std::span<const double> isla
   return sum;
 }
 
-/// Notices and plane forces of the bodies of one rank.
-void Simulation::take_in(int rank, ByteReader& in, std::vector<double>& island_seconds) {
-  for (std::size_t i = 0; i < islands_.size(); ++i) {
-    if (rank_of(islands_[i].bodies.front()) != rank) {
-      continue;
-    }
-    island_seconds[i] = in.value<double>();
+/// Costs of the islands of one rank, and notices and plane forces of their bodies.
+void Simulation::take_in(std::span<const std::size_t> islands, ByteReader& in) {
+  for (const std::size_t i : islands) {
+    island_cost_[i] = in.value<double>();
     for (const Index body : islands_[i].bodies) {
       notices_[at(body)] = in.value<BodyNotice>();
       for (Vec3d& force : workspace_.actions[at(body)].plane_force) {
         force = in.value<Vec3d>();
       }
     }
+  }
+}
+
+/// Islands are stepped side by side, and one may keep several threads busy: what they took by the clock is scaled to
+/// what their machine took for all of them.
+void Simulation::scale_cost(std::span<const std::size_t> islands, double cost) {
+  double sum = 0.0;
+  for (const std::size_t i : islands) {
+    sum += island_cost_[i];
+  }
+  for (const std::size_t i : islands) {
+    island_cost_[i] *= sum > 0.0 ? cost / sum : 0.0;
   }
 }
 
@@ -294,7 +311,7 @@ WorldLoad Simulation::load() const {
   for (const Island& island : islands_) {
     owner.push_back(owner_[at(island.bodies.front())]);
   }
-  load.balance = judge_balance(island_seconds_, owner, world_.machines);
+  load.balance = judge_balance(island_cost_, owner, world_.machines);
   return load;
 }
 

@@ -53,7 +53,7 @@ TEST(rank_record, sums_are_the_same_in_any_order_of_ranks) {
   EXPECT_EQ(first.message_bytes, 3000);
   EXPECT_EQ(first.moved_bytes, 21);
   EXPECT_EQ(first.busy_seconds, 3.0);
-  EXPECT_EQ(first.waiting_seconds, 3.0);
+  EXPECT_EQ(first.waiting_seconds, 6.0);  // the sum
   while (std::next_permutation(order.begin(), order.end())) {
     RankRecord sum;
     for (const int k : order) {

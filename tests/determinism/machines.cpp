@@ -32,6 +32,15 @@ const std::vector<Scene>& scenes() {
   return all;
 }
 
+#ifdef FEXP_THREAD_SANITIZER
+// It looks for races between ranks that share the model, which three of them show as well.
+const std::vector<int> counts{3};
+constexpr unsigned seeds = 2;
+#else
+const std::vector<int> counts{2, 3, 5};
+constexpr unsigned seeds = 6;
+#endif
+
 std::vector<std::string> names(int count) {
   std::vector<std::string> list;
   for (int i = 0; i < count; ++i) {
@@ -76,7 +85,7 @@ TEST_P(machines, any_number_of_them_gives_the_same_bits) {
   test::Outcome reference;
   parallel::with_threads(1, [&] { reference = test::run_scene(model, GetParam().duration, KernelChoice::automatic); });
   for (const auto rule : {cluster::PlacementRule::fewest_elements, cluster::PlacementRule::measured_cost}) {
-    for (const int count : {2, 3, 5}) {
+    for (const int count : counts) {
       SCOPED_TRACE(std::to_string(count) + " machines");
       Result result;
       test::with_world(
@@ -111,7 +120,7 @@ TEST_P(machines, may_come_and_go) {
   const model::Model model = test::build(description);
   test::Outcome reference;
   parallel::with_threads(1, [&] { reference = test::run_scene(model, GetParam().duration, KernelChoice::automatic); });
-  for (unsigned seed = 0; seed < 6; ++seed) {
+  for (unsigned seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
     std::vector<std::string> present = names(1 + static_cast<int>(random() % 4));
@@ -142,7 +151,9 @@ TEST_P(machines, may_come_and_go) {
         next_held[rank] = {own, all[(rank + 1) % all.size()]};
         if (simulation->state().time >= GetParam().duration) {
           note_end(*simulation, result);
-          over = over || rank == 0;
+          if (rank == 0) {
+            over = true;
+          }
         }
       });
       held = std::move(next_held);

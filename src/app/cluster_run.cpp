@@ -190,6 +190,14 @@ std::string read_deck(const std::string& deck, io::InputFiles& files) {
   return bytes;
 }
 
+bool is_complete(const io::RunDirectory& directory) {
+  if (!fs::exists(directory.summary())) {
+    return false;
+  }
+  const auto summary = nlohmann::json::parse(io::read_whole(directory.summary()), nullptr, false);
+  return summary.is_object() && summary.value("completed", false);
+}
+
 /// Removes what an earlier cluster run wrote there, unless it is still alive.
 void clear_earlier_cluster_run(const ClusterRunOptions& options) {
   const fs::path run = options.out.empty() ? fs::path(options.deck).stem().string() + ".run" : options.out;
@@ -243,6 +251,11 @@ ExitCode cluster_resume(const ClusterResumeOptions& options) {
   ClusterRecord record = coordinator::read_record(directory.path());
   const coordinator::RunLock lock(directory.path());
   record = coordinator::read_record(directory.path());  // As it is now that nobody else writes it
+  if (record.state == "running" && is_complete(directory)) {
+    // The coordinator was lost before it heard of the end.
+    record.state = "completed";
+    coordinator::write_record(directory.path(), record);
+  }
   ErrorList errors;
   if (record.state == "completed" || record.state == "fault") {
     errors.add({options.run}, fmt::format("the run is over ({})", record.state), "a run that was ended or lost",

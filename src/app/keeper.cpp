@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <exception>
+#include <optional>
 
 #include "app/saved_run.hpp"
 #include "app/signals.hpp"
+#include "io/output_error.hpp"
 
 namespace fexp::app {
 
@@ -64,8 +67,21 @@ void Keeper::keep(cluster::Simulation& simulation, const cluster::Requests& aske
 
 void Keeper::save_in_memory(cluster::Simulation& simulation, RunOutput* output) {
   const auto start = Clock::now();
-  snapshots_->save(simulation, settings_.hash_every, output != nullptr ? output->mark() : OutputMark{});
+  std::optional<OutputMark> mark;
+  std::exception_ptr failed;
+  try {
+    if (output != nullptr) {
+      mark = output->mark();
+    }
+  } catch (const io::OutputError&) {
+    failed = std::current_exception();
+  }
+  // The other ranks take part in it whatever has become of the files.
+  snapshots_->save(simulation, settings_.hash_every, mark);
   memory_clock_.saved(seconds_since(start));
+  if (failed) {
+    std::rethrow_exception(failed);
+  }
 }
 
 void Keeper::save_on_disk(cluster::Simulation& simulation, RunOutput* output) {

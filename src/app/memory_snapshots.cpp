@@ -8,7 +8,9 @@
 #include <charconv>
 #include <fstream>
 #include <map>
+#include <ranges>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "base/hash.hpp"
@@ -35,19 +37,19 @@ std::int64_t step_of(const fs::path& path) {
   return step;
 }
 
-/// Tells moments apart: two worlds may have saved the same step in other parts.
+/// Tells moments apart: two worlds may have saved the same step in other parts, or with other bodies in them.
 struct Moment {
   std::int64_t step{};
+  std::int64_t history{};
   std::vector<std::string> parts;
-
-  /// The latest first.
-  friend bool operator<(const Moment& a, const Moment& b) {
-    return a.step != b.step ? a.step > b.step : a.parts < b.parts;
-  }
+  [[nodiscard]] auto key() const { return std::tie(step, history, parts); }
+  friend bool operator<(const Moment& a, const Moment& b) { return a.key() < b.key(); }
+  friend bool operator==(const Moment& a, const Moment& b) { return a.key() == b.key(); }
 };
 
 void pack(const Moment& moment, const std::string& part, ByteWriter& out) {
   out.value(moment.step);
+  out.value(moment.history);
   out.text(part);
   out.value(static_cast<std::uint64_t>(moment.parts.size()));
   for (const std::string& one : moment.parts) {
@@ -80,14 +82,19 @@ MemorySnapshots::MemorySnapshots(fs::path folder, const std::string& host, clust
   }
 }
 
-std::int64_t MemorySnapshots::save(const cluster::Simulation& simulation, std::int64_t hash_every,
-                                   const OutputMark& mark) {
+void MemorySnapshots::save(const cluster::Simulation& simulation, std::int64_t hash_every,
+                           const std::optional<OutputMark>& mark) {
+  // Rank 0 has written the outputs and knows how far they are, unless that has just failed.
+  const Bytes told = communicator_.all_gather(mark ? mark->pack() : Bytes{}).front();
+  if (told.empty()) {
+    return;
+  }
   SavedRun own;
   own.step = simulation.state().step;
   own.time = simulation.state().time;
   own.hash_every = hash_every;
-  // Rank 0 has written the outputs and knows how far they are.
-  own.mark = OutputMark::unpack(communicator_.all_gather(mark.pack()).front(), "the mark of rank 0");
+  own.history = history_;
+  own.mark = OutputMark::unpack(told, "the mark of rank 0");
   for (const cluster::Machine& machine : simulation.world().machines) {
     if (machine.present()) {
       own.parts.push_back(machine.name);
@@ -95,10 +102,8 @@ std::int64_t MemorySnapshots::save(const cluster::Simulation& simulation, std::i
     }
   }
   std::vector<cluster::Parcel> parcels;
-  std::int64_t size = 0;
   if (!own.part.empty()) {
     own.piece = simulation.piece(simulation.own_bodies());
-    size = static_cast<std::int64_t>(own.piece.size());
     if (buddy_ != communicator_.rank()) {
       parcels.push_back({buddy_, io::pack_sections(own.sections())});
     }
@@ -115,7 +120,6 @@ std::int64_t MemorySnapshots::save(const cluster::Simulation& simulation, std::i
     }
   }
   remove_older(own.step);
-  return size;
 }
 
 void MemorySnapshots::write(const SavedRun& saved) const {
@@ -172,12 +176,12 @@ std::vector<SavedRun> MemorySnapshots::present() const {
   return found;
 }
 
-std::optional<MemorySnapshots::Found> MemorySnapshots::newest() const {
+std::optional<MemorySnapshots::Found> MemorySnapshots::newest(const TakeUps& take_ups) const {
   std::vector<SavedRun> own = present();
   ByteWriter out;
   out.value(static_cast<std::uint64_t>(own.size()));
   for (const SavedRun& saved : own) {
-    pack({saved.step, saved.parts}, saved.part, out);
+    pack({saved.step, saved.history, saved.parts}, saved.part, out);
   }
   // Who has which part of which moment.
   std::map<Moment, std::map<std::string, int>> moments;
@@ -188,6 +192,7 @@ std::optional<MemorySnapshots::Found> MemorySnapshots::newest() const {
     for (std::uint64_t i = 0; i < count && in.sound(); ++i) {
       Moment moment;
       moment.step = in.value<std::int64_t>();
+      moment.history = in.value<std::int64_t>();
       const std::string part = in.text();
       const auto parts = in.value<std::uint64_t>();
       for (std::uint64_t p = 0; p < parts && in.sound(); ++p) {
@@ -196,16 +201,17 @@ std::optional<MemorySnapshots::Found> MemorySnapshots::newest() const {
       moments[moment].try_emplace(part, static_cast<int>(r));
     }
   }
-  for (const auto& moment : moments) {
+  for (const auto& moment : std::ranges::reverse_view(moments)) {
     const Moment& about = moment.first;
     const std::map<std::string, int>& holders = moment.second;
-    if (!std::ranges::all_of(about.parts, [&](const std::string& part) { return holders.contains(part); })) {
+    if (!take_ups.keep(about.history, about.step) ||
+        !std::ranges::all_of(about.parts, [&](const std::string& part) { return holders.contains(part); })) {
       continue;
     }
     Found found;
     found.step = about.step;
     for (SavedRun& saved : own) {
-      if (saved.step == about.step && saved.parts == about.parts && holders.at(saved.part) == communicator_.rank()) {
+      if (Moment{saved.step, saved.history, saved.parts} == about && holders.at(saved.part) == communicator_.rank()) {
         found.parts.push_back(std::move(saved));
       }
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/saved_run.hpp"
+#include "app/take_ups.hpp"
 #include "cluster/simulation.hpp"
 
 namespace fexp::app {
@@ -20,17 +21,20 @@ class MemorySnapshots {
   /// `folder`: this rank's own. `host`: what may be lost at once with this rank. All ranks together.
   MemorySnapshots(std::filesystem::path folder, const std::string& host, cluster::Communicator& communicator);
 
-  /// All ranks together, at an epoch's start. Returns the bytes of this rank's part.
-  std::int64_t save(const cluster::Simulation& simulation, std::int64_t hash_every, const OutputMark& mark);
+  /// What distinguishes this world's moments from those that other worlds saved at the same step: TakeUps::count().
+  void belong_to(std::int64_t history) noexcept { history_ = history; }
 
-  /// The newest moment of which all parts are somewhere, as far as this rank has them and no lower rank does. All ranks
-  /// together; none when there is no such moment.
+  /// All ranks together, at an epoch's start. `mark`: rank 0's counts; nothing is saved when rank 0 has none.
+  void save(const cluster::Simulation& simulation, std::int64_t hash_every, const std::optional<OutputMark>& mark);
+
+  /// The newest moment of which all parts are somewhere, as far as this rank has them and no lower rank does, and that
+  /// the run's files still have. All ranks together; none when there is no such moment.
   struct Found {
     std::int64_t step{};
     std::vector<SavedRun> parts;
     SavedRun about;  ///< Of one part, without its piece: the same on all ranks
   };
-  [[nodiscard]] std::optional<Found> newest() const;
+  [[nodiscard]] std::optional<Found> newest(const TakeUps& take_ups) const;
 
   /// Removes all that this rank has.
   void clear() const;
@@ -41,6 +45,7 @@ class MemorySnapshots {
   void remove_older(std::int64_t step) const;
 
   std::filesystem::path folder_;
+  std::int64_t history_{};
   cluster::Communicator& communicator_;
   int buddy_{};                ///< The rank that keeps this one's part
   std::vector<int> kept_for_;  ///< The ranks whose parts this one keeps

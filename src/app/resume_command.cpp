@@ -14,8 +14,10 @@
 #include "app/run_driver.hpp"
 #include "app/saved_run.hpp"
 #include "app/signals.hpp"
+#include "app/take_ups.hpp"
 #include "app/with_ranks.hpp"
 #include "base/errors.hpp"
+#include "coordinator/record.hpp"
 #include "io/atomic_file.hpp"
 #include "io/checkpoint_files.hpp"
 #include "io/output_error.hpp"
@@ -72,7 +74,15 @@ Found find(const io::RunDirectory& directory) {
 ExitCode resume_here(const ResumeOptions& options, Ranks& ranks) {
   const io::RunDirectory directory(options.run);
   Found found;
-  ranks.on_first([&] { found = find(directory); });
+  TakeUps take_ups;
+  std::optional<coordinator::RunLock> lock;
+  ranks.on_first([&] {
+    if (fs::exists(directory.path() / "cluster.lock")) {
+      lock.emplace(directory.path());
+    }
+    found = find(directory);
+    take_ups = TakeUps::read(directory.taken_up());
+  });
   const SignalWatch watch;
   const Case loaded = ranks.load(found.files.deck(), found.files);
   TakenUp taken_up;
@@ -88,7 +98,15 @@ ExitCode resume_here(const ResumeOptions& options, Ranks& ranks) {
     print_error(fmt::format("fexp: going on from step {}, time {:.6g}\n", found.saved.step, found.saved.time));
   }
   RunEnd end;
-  return drive({ranks, loaded, directory, settings, std::move(taken_up)}, end);
+  Drive run{ranks, loaded, directory, settings, std::move(taken_up)};
+  if (take_ups.count() > 0) {
+    // Snapshots of the cluster run that this was speak of files that are cut back now.
+    run.before_output = [&](std::int64_t step) {
+      take_ups.add(step);
+      take_ups.write(directory.taken_up());
+    };
+  }
+  return drive(run, end);
 }
 
 std::function<ExitCode()> declare(CLI::App& app) {

@@ -65,6 +65,9 @@ std::optional<RunOutput> open_output(const Drive& run, const cluster::Simulation
     return output;
   }
   try {
+    if (run.before_output) {
+      run.before_output(simulation.state().step);
+    }
     if (run.taken_up) {
       output.emplace(run.directory, loaded, run.taken_up->mark);
       output->log_resumed(simulation.state());
@@ -98,7 +101,41 @@ void close_output(std::optional<RunOutput>& output, RunEnd& end) {
   }
 }
 
-/// What the run's end leaves no use for.
+/// Writes the summary, and says on stdout and stderr what the user is to know. On rank 0.
+ExitCode report(const Drive& run, const cluster::Simulation& simulation, const Keeper& keeper, std::int64_t frames,
+                Clock::time_point start, RunEnd& end) {
+  const Case& loaded = run.loaded;
+  io::Summary summary;
+  const auto finish_summary = [&] {
+    summary = summarise(loaded, simulation, end);
+    summary.ranks = run.ranks.size();
+    summary.frames = frames;
+    summary.files = files_of(run.directory);
+    summary.wall_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    summary.network.snapshot_share =
+        (keeper.memory_clock().total_seconds() + keeper.disk_clock().total_seconds()) / summary.wall_seconds;
+  };
+  finish_summary();
+  try {
+    write_placement(run.directory, summary, loaded.deck.units);
+    finish_summary();
+    io::write_summary(run.directory.summary(), summary);
+  } catch (const io::OutputError& error) {
+    if (end.reason != EndReason::output_error) {
+      note_output_error(error, end);
+      finish_summary();
+    }
+  }
+  if (run.settings.json) {
+    print_json(io::to_json(summary));
+  } else if (!run.settings.quiet) {
+    print_out(summary_text(summary, loaded.deck.units, simulation.start(), end.last.diagnostics));
+  }
+  return report_end(end, frames, run.directory);
+}
+
+}  // namespace
+
 void clear_saved(const Drive& run, const RunEnd& end) {
   if (end.reason != EndReason::completed && end.reason != EndReason::fault) {
     return;
@@ -110,8 +147,6 @@ void clear_saved(const Drive& run, const RunEnd& end) {
     run.snapshots->clear();
   }
 }
-
-}  // namespace
 
 ExitCode drive(const Drive& run, RunEnd& end) {
   const auto start = Clock::now();
@@ -143,38 +178,17 @@ ExitCode drive(const Drive& run, RunEnd& end) {
     output->log(end.reason == EndReason::completed ? "completed" : end.message);
   }
   close_output(output, end);
-  clear_saved(run, end);
-  if (!run.ranks.is_first() || end.reason == EndReason::reform) {
-    return ExitCode::done;
+  ExitCode code = ExitCode::done;
+  if (run.ranks.is_first() && end.reason != EndReason::reform) {
+    code = report(run, *simulation, keeper, output ? output->frames() : 0, start, end);
   }
-  const std::int64_t frames = output ? output->frames() : 0;
-  io::Summary summary;
-  const auto finish_summary = [&] {
-    summary = summarise(loaded, *simulation, end);
-    summary.ranks = run.ranks.size();
-    summary.frames = frames;
-    summary.files = files_of(run.directory);
-    summary.wall_seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    summary.network.snapshot_share =
-        (keeper.memory_clock().total_seconds() + keeper.disk_clock().total_seconds()) / summary.wall_seconds;
-  };
-  finish_summary();
-  try {
-    write_placement(run.directory, summary, loaded.deck.units);
-    finish_summary();
-    io::write_summary(run.directory.summary(), summary);
-  } catch (const io::OutputError& error) {
-    if (end.reason != EndReason::output_error) {
-      note_output_error(error, end);
-      finish_summary();
-    }
+  // Only rank 0 knows whether the files are complete.
+  const auto reason = static_cast<std::byte>(end.reason);
+  end.reason = static_cast<EndReason>(run.ranks.from_first(std::span(&reason, 1)).front());
+  if (run.link == nullptr) {
+    clear_saved(run, end);
   }
-  if (run.settings.json) {
-    print_json(io::to_json(summary));
-  } else if (!run.settings.quiet) {
-    print_out(summary_text(summary, loaded.deck.units, simulation->start(), end.last.diagnostics));
-  }
-  return report_end(end, frames, run.directory);
+  return code;
 }
 
 }  // namespace fexp::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -38,12 +39,17 @@ struct Drive {
   const io::RunDirectory& directory;  ///< Made already; used on rank 0
   DriveSettings settings;
   std::optional<TakenUp> taken_up{};
-  WorkerLink* link{};  ///< For a worker of a cluster run, with the next
+  std::function<void(std::int64_t step)> before_output{};  ///< On rank 0, before files are begun or cut back
+  WorkerLink* link{};                                      ///< For a worker of a cluster run, with the next
   MemorySnapshots* snapshots{};
 };
 
 /// Runs to the end, all ranks together, and writes the summary; says on stdout and stderr what the user is to know.
-/// Returns the exit code on rank 0, done on the others.
+/// Returns the exit code on rank 0, done on the others. `end.reason` is the same on all.
 [[nodiscard]] ExitCode drive(const Drive& run, RunEnd& end);
+
+/// Removes what this rank has saved of a run that is over, once everybody who waits for the end knows of it: without
+/// it, whoever does not know would begin again.
+void clear_saved(const Drive& run, const RunEnd& end);
 
 }  // namespace fexp::app

@@ -11,6 +11,7 @@ std::vector<io::Section> SavedRun::sections() const {
   about.value(step);
   about.value(time);
   about.value(hash_every);
+  about.value(history);
   about.text(part);
   about.value(static_cast<std::uint64_t>(parts.size()));
   for (const std::string& one : parts) {
@@ -26,6 +27,7 @@ SavedRun SavedRun::from(std::span<const io::Section> sections, const std::filesy
   saved.step = about.value<std::int64_t>();
   saved.time = about.value<double>();
   saved.hash_every = about.value<std::int64_t>();
+  saved.history = about.value<std::int64_t>();
   saved.part = about.text();
   const auto count = about.value<std::uint64_t>();
   for (std::uint64_t i = 0; i < count && about.sound(); ++i) {

@@ -21,6 +21,7 @@ struct SavedRun {
   std::vector<std::string> parts;
   std::string part;
   std::int64_t hash_every{};
+  std::int64_t history{};  ///< Number of the take-up before it; see TakeUps
   OutputMark mark;
   Bytes piece;  ///< Of cluster::Simulation
 

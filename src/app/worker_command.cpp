@@ -13,10 +13,10 @@
 
 #include "app/command.hpp"
 #include "app/options.hpp"
-#include "app/print.hpp"
 #include "app/run_driver.hpp"
 #include "app/saved_run.hpp"
 #include "app/signals.hpp"
+#include "app/take_ups.hpp"
 #include "app/with_ranks.hpp"
 #include "app/worker_link.hpp"
 #include "coordinator/control_channel.hpp"
@@ -74,27 +74,31 @@ nlohmann::json greeting_of(Ranks& ranks, std::optional<coordinator::ControlClien
 }
 
 /// The checkpoint on the disk, where there is one.
-std::optional<SavedRun> on_disk(const io::RunDirectory& directory) {
+std::optional<SavedRun> on_disk(const io::RunDirectory& directory, WorkerLink& link) {
   const io::CheckpointFiles files(directory.checkpoints());
   if (files.steps().empty()) {
     return std::nullopt;
   }
   try {
     const io::FoundCheckpoint found = files.newest();
+    for (const std::string& sentence : found.passed_over) {
+      link.send({{"event", "note"}, {"text", sentence}});
+    }
     return SavedRun::from(found.sections, found.path);
   } catch (const io::OutputError& error) {
-    print_error(fmt::format("fexp: {}\n", error.what()));
+    link.send({{"event", "note"}, {"text", error.what()}});
     return std::nullopt;
   }
 }
 
 /// Where the run goes on: the newest moment that the machines' memory or the disk has; nothing at the run's start.
-std::optional<TakenUp> find_moment(Ranks& ranks, const MemorySnapshots& snapshots, const io::RunDirectory& directory) {
-  std::optional<MemorySnapshots::Found> memory = snapshots.newest();
+std::optional<TakenUp> find_moment(Ranks& ranks, const MemorySnapshots& snapshots, const TakeUps& take_ups,
+                                   const io::RunDirectory& directory, WorkerLink& link) {
+  std::optional<MemorySnapshots::Found> memory = snapshots.newest(take_ups);
   std::optional<SavedRun> disk;
   std::int64_t disk_step = -1;
   if (ranks.is_first()) {
-    disk = on_disk(directory);
+    disk = on_disk(directory, link);
     disk_step = disk ? disk->step : -1;
   }
   disk_step =
@@ -151,7 +155,16 @@ ExitCode work_here(const WorkerOptions& options, Ranks& ranks) {
   });
   const Case loaded = ranks.load(files.deck(), files);
   MemorySnapshots snapshots(coordinator::snapshot_folder(options.run_id, machine), machine, ranks.communicator());
-  Drive run{ranks, loaded, directory, {}, find_moment(ranks, snapshots, directory), &link, &snapshots};
+  TakeUps take_ups;
+  ranks.on_first([&] { take_ups = TakeUps::read(directory.taken_up()); });
+  take_ups = TakeUps::unpack(ranks.from_first(take_ups.pack()));
+  Drive run{ranks, loaded, directory, {}, find_moment(ranks, snapshots, take_ups, directory, link),
+            {},    &link,  &snapshots};
+  snapshots.belong_to(take_ups.count() + 1);
+  run.before_output = [&](std::int64_t step) {
+    take_ups.add(step);
+    take_ups.write(directory.taken_up());
+  };
   run.settings.world.writer_only = options.writer_only;
   run.settings.hash_every = greeting.at("options").value("hash_every", std::int64_t{0});
   run.settings.quiet = true;
@@ -163,6 +176,7 @@ ExitCode work_here(const WorkerOptions& options, Ranks& ranks) {
              {"message", end.message},
              {"step", end.last_step}});
   link.finish();
+  clear_saved(run, end);
   // The coordinator knows why; mpirun need not add its own words.
   return ExitCode::done;
 }

@@ -139,7 +139,7 @@ void Coordinator::look_at_launcher(double now) {
     if (!output.empty()) {
       settings_.note(fmt::format("mpirun of world {} wrote:\n{}", launched_->world, output));
     }
-    membership_.launcher_exited(now, failure.words, failure.rank);
+    membership_.launcher_exited(now, failure.words, failure.rank, failure.killed);
   }
 }
 

@@ -84,6 +84,8 @@ void Coordinator::receive_from_world(double now, const nlohmann::json& message) 
   if (event == "started") {
     say(fmt::format("world {} is stepping, from step {}", launched_->world, step));
     membership_.started(now, step);
+  } else if (event == "note") {
+    say(text_of(message, "text"));
   } else if (event == "status") {
     membership_.advanced(now, step);
     worker_status_ = message;

@@ -118,7 +118,7 @@ void Membership::advanced(double now, std::int64_t step) {
   if (step > best_step_) {
     best_step_ = step;
     world_->gained = true;
-    fruitless_ = fruitless_starts_ = output_failures_ = 0;
+    fruitless_ = fruitless_starts_ = fruitless_kills_ = output_failures_ = 0;
   }
   news(now, world_->started);
   for (Host& host : hosts_) {
@@ -153,7 +153,7 @@ void Membership::connection_lost(double now) {
   }
 }
 
-void Membership::launcher_exited(double now, const std::string& words, std::optional<int> failed_rank) {
+void Membership::launcher_exited(double now, const std::string& words, std::optional<int> failed_rank, bool killed) {
   if (!world_ || world_->killing) {
     return;
   }
@@ -167,6 +167,7 @@ void Membership::launcher_exited(double now, const std::string& words, std::opti
     world_->died_on = world_->ranks[static_cast<std::size_t>(*failed_rank)].name;
   }
   world_->end.reset();
+  world_->killed = killed;
   lose(words, {});
 }
 
@@ -257,7 +258,23 @@ void Membership::settle_loss(double now) {
     }
     host->rank_died = now;
   }
-  if (world.gained || unreachable_in_loss_ || !world.culprits.empty()) {
+  if (!world.gained && !unreachable_in_loss_ && world.culprits.empty()) {
+    settle_fruitless(now, world);
+  }
+}
+
+/// A world has gained nothing, and no machine is to blame: when this goes on, the run is given up.
+void Membership::settle_fruitless(double now, const World& world) {
+  if (world.killed) {
+    // Somebody, or a system without memory, kills again and again; it may be over soon.
+    if (++fruitless_kills_ >= settings_.timing.fruitless_kills && !stop_asked_) {
+      finish(Outcome::gave_up, 0,
+             fmt::format("{} worlds in a row were killed without getting beyond step {}; the last one: {}",
+                         fruitless_kills_, best_step_, last_loss_));
+    } else if (fruitless_kills_ > 1) {
+      not_before_ =
+          now + doubled(settings_.timing.first_kill_wait, settings_.timing.longest_kill_wait, fruitless_kills_ - 2);
+    }
     return;
   }
   ++fruitless_;

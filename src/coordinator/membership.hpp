@@ -112,8 +112,11 @@ struct Timing {
   double good_conduct{300.0};     ///< After so long without failure its failures are forgotten
   double first_output_wait{5.0};  ///< After an error of output, then twice as long ...
   double longest_output_wait{60.0};
-  int fruitless_starts{3};  ///< Worlds in a row that die before they start: give up
-  int fruitless_worlds{6};  ///< Worlds in a row that gain no step: give up
+  int fruitless_starts{3};      ///< Worlds in a row that die before they start: give up
+  int fruitless_worlds{6};      ///< Worlds in a row that gain no step: give up
+  int fruitless_kills{12};      ///< Worlds in a row that are killed from outside and gain no step: give up
+  double first_kill_wait{0.1};  ///< After the second one of these, then twice as long ...
+  double longest_kill_wait{30.0};
 };
 
 /// Decides which machines make up the cluster, when a world ends and a new one begins, and who is to blame when one is
@@ -146,8 +149,9 @@ class Membership {
   void advanced(double now, std::int64_t step);
   void ended(double now, const EndMessage& message);
   void connection_lost(double now);
-  /// mpirun is gone; `words` on why, and the rank that failed if it said so.
-  void launcher_exited(double now, const std::string& words, std::optional<int> failed_rank);
+  /// mpirun is gone; `words` on why, the rank that failed if it said so, and whether it or mpirun was killed from
+  /// outside, for which neither the run nor a machine can be blamed at once.
+  void launcher_exited(double now, const std::string& words, std::optional<int> failed_rank, bool killed = false);
 
   /// The first call ends the run in order, the second at once.
   void stop(double now);
@@ -200,7 +204,7 @@ class Membership {
     std::optional<EndMessage> end;
     std::map<std::string, std::string> culprits;  ///< Machine -> what is wrong with it
     std::string died_on;                          ///< Machine of the rank that died
-    bool gained{};
+    bool gained{}, killed{};
   };
 
   void add_wanted(double now, const Machine& machine);
@@ -214,6 +218,7 @@ class Membership {
   void lose(const std::string& words, const std::vector<std::string>& unreachable);
   void settle(double now);
   void settle_loss(double now);
+  void settle_fruitless(double now, const World& world);
   void settle_end(double now, const EndMessage& end);
   void blame(double now, const std::string& name, const std::string& words);
   void leave_out(double now, Host& host, const std::string& words);
@@ -233,6 +238,7 @@ class Membership {
   std::int64_t best_step_{};
   int fruitless_{};
   int fruitless_starts_{};
+  int fruitless_kills_{};
   int output_failures_{};
   bool unreachable_in_loss_{};
   double not_before_{};

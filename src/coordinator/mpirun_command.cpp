@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <csignal>
 #include <sstream>
 
 namespace fexp::coordinator {
@@ -89,6 +90,9 @@ std::string last_words(std::string_view output) {
   return fmt::format("{}", fmt::join(lines, " | "));
 }
 
+/// Whether the signal comes from a user or from the system, rather than from an error of the program.
+bool is_from_outside(std::optional<int> signal) { return signal == SIGKILL || signal == SIGTERM; }
+
 }  // namespace
 
 std::vector<std::string> split_words(std::string_view text) {
@@ -164,6 +168,7 @@ LaunchFailure explain_launch_failure(std::string_view output, std::string_view s
   };
   const std::string last = last_words(output);
   if (const auto rank = number_after(output, "noticed that process rank ")) {
+    failure.killed = is_from_outside(number_after(output, "exited on signal "));
     failure.rank = rank;
     failure.words = fmt::format("the worker on {} was ended by signal {}", name_of(*rank),
                                 between(output, "exited on signal ", "."));
@@ -173,6 +178,7 @@ LaunchFailure explain_launch_failure(std::string_view output, std::string_view s
     const std::size_t own = last.find("fexp:");
     failure.words += own == last.npos ? "" : ": " + last.substr(own);
   } else {
+    failure.killed = is_from_outside(number_after(status, "signal "));
     failure.words = fmt::format("mpirun ended ({}){}{}", status, last.empty() ? "" : ": ", last);
   }
   return failure;

@@ -41,6 +41,7 @@ struct WorldLaunch {
 /// What mpirun said before it ended, in plain words.
 struct LaunchFailure {
   std::optional<int> rank;  ///< That failed
+  bool killed{};            ///< From outside, by SIGKILL or SIGTERM
   std::string words;
 };
 /// `output` is the end of mpirun's output, `status` tells how it ended ("exit code 1").

@@ -50,8 +50,8 @@ fs::path first_free(const fs::path& deck) {
 void clear_earlier_run(const RunDirectory& run) {
   std::error_code error;
   const bool is_run = fs::exists(run.versions(), error);
-  for (const fs::path& path :
-       {run.deck(), run.results(), run.xdmf(), run.log(), run.summary(), run.versions(), run.inputs()}) {
+  for (const fs::path& path : {run.deck(), run.results(), run.xdmf(), run.log(), run.summary(), run.versions(),
+                               run.inputs(), run.taken_up()}) {
     fs::remove(path, error);
   }
   CheckpointFiles(run.checkpoints()).clear();

@@ -44,6 +44,8 @@ class RunDirectory {
   [[nodiscard]] std::filesystem::path inputs() const { return path_ / "inputs.fexp"; }
   /// The directory of CheckpointFiles.
   [[nodiscard]] std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
+  /// The steps at which the run was taken up, one line for each time.
+  [[nodiscard]] std::filesystem::path taken_up() const { return path_ / "taken_up.csv"; }
   /// "energies" -> <directory>/energies.csv
   [[nodiscard]] std::filesystem::path history(std::string_view name) const {
     return path_ / (std::string(name) + ".csv");

@@ -613,6 +613,27 @@ TEST(membership, worlds_that_die_because_a_machine_is_away_do_not_count_against_
   EXPECT_FALSE(scene.finished);
 }
 
+TEST(membership, worlds_that_are_killed_from_outside_are_tried_again_for_longer) {
+  Scene scene;
+  scene.want("here", "localhost");
+  for (int k = 0; k < 11; ++k) {
+    const std::size_t before = scene.launches.size();
+    scene.membership.launcher_exited(scene.now, "mpirun ended (signal 9)", {}, true);
+    scene.settle();
+    scene.clean();
+    EXPECT_EQ(scene.launches.size(), k == 0 ? before + 1 : before) << "the first one at once, later ones after a wait";
+    EXPECT_FALSE(scene.finished) << k;
+    scene.pass(31.0);
+    EXPECT_EQ(scene.launches.size(), before + 1);
+  }
+  scene.membership.launcher_exited(scene.now, "mpirun ended (signal 9)", {}, true);
+  scene.settle();
+  scene.clean();
+  ASSERT_TRUE(scene.finished);
+  EXPECT_EQ(scene.finished->outcome, Outcome::gave_up);
+  EXPECT_NE(scene.finished->message.find("12 worlds in a row were killed"), std::string::npos);
+}
+
 TEST(membership, a_start_between_deaths_breaks_the_row) {
   Scene scene;
   scene.want("here", "localhost");

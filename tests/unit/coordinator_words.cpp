@@ -122,6 +122,16 @@ TEST(launch_failure, names_the_machine_whose_rank_was_killed) {
       "exit code 137", two_ranks().ranks);
   EXPECT_EQ(failure.rank, 1);
   EXPECT_EQ(failure.words, "the worker on c2 was ended by signal 9 (Killed)");
+  EXPECT_TRUE(failure.killed);
+}
+
+TEST(launch_failure, tells_a_worker_that_failed_from_one_that_was_killed) {
+  const LaunchFailure failure = explain_launch_failure(
+      "mpirun noticed that process rank 0 with PID 0 on node c1 exited on signal 11 (Segmentation fault).\n",
+      "exit code 139", two_ranks().ranks);
+  EXPECT_FALSE(failure.killed);
+  EXPECT_TRUE(explain_launch_failure("", "signal 9", {}).killed);
+  EXPECT_FALSE(explain_launch_failure("", "exit code 1", {}).killed);
 }
 
 TEST(launch_failure, tells_the_workers_own_words) {

@@ -32,6 +32,23 @@ def is_alive(process):
         return False
 
 
+def parent_of(process):
+    text = Path(f"/proc/{process}/stat").read_text(encoding="utf-8", errors="replace")
+    return int(text.rsplit(")", 1)[1].split()[1])
+
+
+def processes_in(folder):
+    """Processes that work in this folder, by their ids."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/cwd"):
+        try:
+            if path.resolve() == folder and is_alive(path.parent.name):
+                found.append(int(path.parent.name))
+        except OSError:
+            continue
+    return found
+
+
 class Case(program.Case):
     """A test with a deck, a list of machines and at most a few runs."""
 

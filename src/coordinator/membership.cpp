@@ -253,7 +253,8 @@ void Membership::settle_loss(double now) {
   }
   Host* host = find(world.died_on);
   if (host != nullptr && !world.culprits.contains(world.died_on)) {
-    if (host->rank_died && now - *host->rank_died < settings_.timing.repeated_failure) {
+    // Without another machine, to leave this one out would only be to wait.
+    if (usable().size() > 1 && host->rank_died && now - *host->rank_died < settings_.timing.repeated_failure) {
       leave_out(now, *host, last_loss_);
     }
     host->rank_died = now;

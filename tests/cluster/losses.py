@@ -49,7 +49,7 @@ class Ranks(real.Case):
 
 class Machines(real.Case):
     def test_machines_join_and_leave_by_commands_and_by_the_hosts_file(self):
-        process = self.start_real("c1", "c2", words=("--at", "700 remove c1"))
+        process = self.start_real("c1", "c2", words=("--at", "1500 remove c1"))
         self.wait_for_step(100, process)
         self.cluster("add", "c3=localhost:1")
         self.wait_for_world(2, process)
@@ -216,8 +216,8 @@ class PlainRuns(real.Case):
         self.check_equal()
 
 
-class Long(real.Case):
-    """More of the same."""
+class More(real.Case):
+    """Rarer than the ones above."""
 
     def test_rank_0_is_killed_again_and_again_while_it_writes(self):
         process = self.start_real("c1", "c2")

@@ -8,7 +8,6 @@
 #include <charconv>
 #include <fstream>
 #include <map>
-#include <ranges>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -43,7 +42,8 @@ struct Moment {
   std::int64_t history{};
   std::vector<std::string> parts;
   [[nodiscard]] auto key() const { return std::tie(step, history, parts); }
-  friend bool operator<(const Moment& a, const Moment& b) { return a.key() < b.key(); }
+  /// The latest first: clang 14 cannot walk the library's views backwards.
+  friend bool operator<(const Moment& a, const Moment& b) { return a.key() > b.key(); }
   friend bool operator==(const Moment& a, const Moment& b) { return a.key() == b.key(); }
 };
 
@@ -201,7 +201,7 @@ std::optional<MemorySnapshots::Found> MemorySnapshots::newest(const TakeUps& tak
       moments[moment].try_emplace(part, static_cast<int>(r));
     }
   }
-  for (const auto& moment : std::ranges::reverse_view(moments)) {
+  for (const auto& moment : moments) {
     const Moment& about = moment.first;
     const std::map<std::string, int>& holders = moment.second;
     if (!take_ups.keep(about.history, about.step) ||

@@ -81,7 +81,8 @@ struct Candidate {
   std::size_t island{};
   double weight{};
   Origin origin{Origin::same};
-  MachineIndex host{no_machine};  ///< Where it is or gathers
+  MachineIndex host{no_machine};        ///< Where it is or gathers
+  std::vector<MachineIndex> as_good{};  ///< Where a merged island could gather as well, if not only there
 };
 
 class Placer {
@@ -95,8 +96,13 @@ class Placer {
   Placement place() {
     // Loads first, as far as they are settled, so that what is looked for a place sees them.
     for (const Candidate& c : candidates_) {
-      if (c.origin != Origin::homeless) {
-        settle(c, c.host, c.origin == Origin::merged ? MoveReason::merge : MoveReason::split);
+      if (c.origin == Origin::same || c.origin == Origin::piece) {
+        settle(c, c.host, MoveReason::split);
+      }
+    }
+    for (const Candidate& c : candidates_) {
+      if (c.origin == Origin::merged) {
+        settle(c, gathering_place(c), MoveReason::merge);
       }
     }
     std::vector<bool> first_stays(task_.machines.size(), false);
@@ -161,6 +167,13 @@ class Placer {
         c.host = machine;
       }
     }
+    if (std::ranges::count(held, most, &std::pair<MachineIndex, double>::second) > 1) {
+      for (const auto& [machine, weight] : held) {
+        if (weight == most) {
+          c.as_good.push_back(machine);
+        }
+      }
+    }
     const std::size_t before = island_before[at(bodies.front())];
     if (c.host == no_machine) {
       c.origin = Origin::homeless;
@@ -184,6 +197,15 @@ class Placer {
       reason_[at(body)] = from != no_machine && !loads_.present(from) ? MoveReason::machine_left : reason;
       placement_.owner[at(body)] = machine;
     }
+  }
+
+  /// Of machines that hold as much of a merged island the least loaded one; of these the lowest.
+  [[nodiscard]] MachineIndex gathering_place(const Candidate& c) const {
+    MachineIndex best = c.host;
+    for (const MachineIndex machine : c.as_good) {
+      best = loads_.of(machine) < loads_.of(best) ? machine : best;
+    }
+    return best;
   }
 
   void place_piece(const Candidate& c, std::vector<bool>& first_stays) {

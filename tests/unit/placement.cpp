@@ -108,15 +108,41 @@ TEST(placement, an_island_is_one_piece_of_weight_and_stays_together) {
   EXPECT_EQ(run.next({{0, 1, 2}, {3}}), (Owners{0, 0, 0, 1}));
 }
 
-TEST(placement, a_merged_island_gathers_where_most_of_it_is_and_ties_go_to_the_lowest_machine) {
+TEST(placement, a_merged_island_gathers_where_most_of_it_is) {
   Course run{machines_of({1, 1, 1}), {10, 20, 20}};
   run.owner = {0, 2, 1};
   run.islands = {{0}, {1}, {2}};
   EXPECT_EQ(run.next({{0, 1}, {2}}), (Owners{2, 2, 1}));
   EXPECT_EQ(run.next({{0, 1, 2}}), (Owners{2, 2, 2}));
-  run.owner = {0, 2, 1};
-  run.islands = {{0}, {1}, {2}};
-  EXPECT_EQ(run.next({{0}, {1, 2}}), (Owners{0, 1, 1}));
+}
+
+TEST(placement, of_machines_with_equal_parts_of_a_merged_island_the_least_loaded_gathers_it_then_the_lowest) {
+  Course run{machines_of({1, 1, 1}), {10, 20, 20, 5}};
+  run.owner = {0, 2, 1, 2};
+  run.islands = apart;
+  // Both have 20 of the island; machine 2 has 5 besides.
+  EXPECT_EQ(run.next({{0}, {1, 2}, {3}}), (Owners{0, 1, 1, 2}));
+  run.owner = {0, 2, 1, 1};
+  run.islands = apart;
+  EXPECT_EQ(run.next({{0}, {1, 2}, {3}}), (Owners{0, 2, 2, 1}));
+  run.owner = {0, 2, 1, 0};
+  run.islands = apart;
+  EXPECT_EQ(run.next({{0}, {1, 2}, {3}}), (Owners{0, 1, 1, 0}));
+}
+
+TEST(placement, many_pairs_of_equal_bodies_that_merge_at_once_share_the_machines_evenly) {
+  constexpr Index pairs = 100;
+  Course run{machines_of({1, 1}), std::vector<double>(at(2 * pairs), 192.0)};
+  Lists alone, together;
+  for (Index p = 0; p < pairs; ++p) {
+    alone.insert(alone.end(), {{2 * p}, {2 * p + 1}});
+    together.push_back({2 * p, 2 * p + 1});
+  }
+  run.next(alone);
+  run.next(together);
+  EXPECT_EQ(run.load(0), run.load(1));
+  run.next(alone);
+  EXPECT_EQ(run.load(0), run.load(1));
 }
 
 TEST(placement, unchanged_islands_stay_however_uneven_the_load_is) {

@@ -199,9 +199,13 @@ class Placer {
     }
   }
 
-  /// Of machines that hold as much of a merged island the least loaded one; of these the lowest.
+  /// Of machines that hold as much of a merged island the lowest, by the paper's tables. By cost the least loaded one
+  /// before: where bodies are alike, ties are frequent, and one machine must not get them all.
   [[nodiscard]] MachineIndex gathering_place(const Candidate& c) const {
     MachineIndex best = c.host;
+    if (task_.rule == PlacementRule::fewest_elements) {
+      return best;
+    }
     for (const MachineIndex machine : c.as_good) {
       best = loads_.of(machine) < loads_.of(best) ? machine : best;
     }

@@ -61,8 +61,8 @@ struct Placement {
 /// Places every island on one present machine, of which there must be one. A pure function. The rule [REK19, section 5,
 /// tables 1 and 2; the text of the rule is not in the paper, this one gives its tables]:
 /// 1. An island that was there before stays, unless its machine has left.
-/// 2. A merged island gathers on the machine that holds most of its elements; of several such on the least loaded one
-///    by then, ties go to the lowest. Where bodies are alike ties are the rule, and one machine must not get them all.
+/// 2. A merged island gathers on the machine that holds most of its elements; ties go to the lowest machine (by cost to
+///    the least loaded one).
 /// 3. Of the pieces that islands on one machine have split into, the first (most elements, then lowest body) stays.
 ///    Each other goes to the least loaded machine if that stays less loaded than the one it leaves was.
 /// 4. Islands without a machine, most elements first, go to the least loaded one; ties go to the lowest.

@@ -86,7 +86,16 @@ struct Course {
 
 const Lists apart{{0}, {1}, {2}, {3}};
 
-TEST(placement, four_spheres_on_four_machines_go_as_in_the_papers_table) {
+TEST(placement, four_spheres_on_three_machines_and_a_fourth_go_as_in_the_papers_table) {
+  Course run{machines_of({1, 1, 1}), {192, 192, 192, 192}};
+  EXPECT_EQ(run.next(apart), (Owners{0, 1, 2, 0}));
+  EXPECT_EQ(run.next({{0, 1}, {2}, {3}}), (Owners{0, 0, 2, 0}));
+  run.machines = machines_of({1, 1, 1, 1});
+  EXPECT_EQ(run.next({{0, 1}, {2, 3}}), (Owners{0, 0, 0, 0}));
+  EXPECT_EQ(run.next(apart), (Owners{0, 1, 2, 3}));
+}
+
+TEST(placement, four_spheres_on_four_machines_part_and_gather_in_pairs) {
   Course run{machines_of({1, 1, 1, 1}), {192, 192, 192, 192}};
   EXPECT_EQ(run.next(apart), (Owners{0, 1, 2, 3}));
   EXPECT_EQ(run.next({{0, 1}, {2}, {3}}), (Owners{0, 0, 2, 3}));
@@ -116,8 +125,16 @@ TEST(placement, a_merged_island_gathers_where_most_of_it_is) {
   EXPECT_EQ(run.next({{0, 1, 2}}), (Owners{2, 2, 2}));
 }
 
-TEST(placement, of_machines_with_equal_parts_of_a_merged_island_the_least_loaded_gathers_it_then_the_lowest) {
+TEST(placement, by_elements_the_lowest_of_machines_with_equal_parts_gathers_a_merged_island) {
   Course run{machines_of({1, 1, 1}), {10, 20, 20, 5}};
+  run.owner = {0, 2, 1, 1};
+  run.islands = apart;
+  EXPECT_EQ(run.next({{0}, {1, 2}, {3}}), (Owners{0, 1, 1, 1}));
+}
+
+TEST(placement, by_cost_the_least_loaded_of_machines_with_equal_parts_gathers_a_merged_island_then_the_lowest) {
+  Course run{machines_of({1, 1, 1}), {40, 20, 20, 5}};
+  run.rule = cost;
   run.owner = {0, 2, 1, 2};
   run.islands = apart;
   // Both have 20 of the island; machine 2 has 5 besides.
@@ -127,12 +144,14 @@ TEST(placement, of_machines_with_equal_parts_of_a_merged_island_the_least_loaded
   EXPECT_EQ(run.next({{0}, {1, 2}, {3}}), (Owners{0, 2, 2, 1}));
   run.owner = {0, 2, 1, 0};
   run.islands = apart;
-  EXPECT_EQ(run.next({{0}, {1, 2}, {3}}), (Owners{0, 1, 1, 0}));
+  // A tie of idle machines; body 3 then balances.
+  EXPECT_EQ(run.next({{0}, {1, 2}, {3}}), (Owners{0, 1, 1, 2}));
 }
 
-TEST(placement, many_pairs_of_equal_bodies_that_merge_at_once_share_the_machines_evenly) {
+TEST(placement, by_cost_many_pairs_of_equal_bodies_that_merge_at_once_share_the_machines_evenly) {
   constexpr Index pairs = 100;
   Course run{machines_of({1, 1}), std::vector<double>(at(2 * pairs), 192.0)};
+  run.rule = cost;
   Lists alone, together;
   for (Index p = 0; p < pairs; ++p) {
     alone.insert(alone.end(), {{2 * p}, {2 * p + 1}});

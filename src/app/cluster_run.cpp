@@ -242,6 +242,7 @@ ExitCode cluster_run(const ClusterRunOptions& options) {
                     options.mpirun,
                     options.threads,
                     options.hash_every,
+                    options.checkpoint_seconds,
                     options.quiet};
   return coordinate(directory, record, options.quiet, options.json);
 }

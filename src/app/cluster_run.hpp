@@ -19,6 +19,7 @@ struct ClusterRunOptions {
   std::string agent;
   std::string mpirun;
   std::int64_t hash_every{};
+  double checkpoint_seconds{60.0};
   bool quiet{};
   bool json{};
   std::vector<std::string> events;

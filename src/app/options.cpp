@@ -20,15 +20,19 @@ void add_threads_option(CLI::App& options, int& threads) {
 
 void add_json_option(CLI::App& options, bool& json, const char* meaning) { options.add_flag("--json", json, meaning); }
 
-void add_drive_options(CLI::App& options, DriveSettings& settings) {
-  using cluster::PlacementRule;
+void add_checkpoint_option(CLI::App& options, double& seconds) {
   constexpr double longest = 1.0e9;
   options
-      .add_option("--checkpoint-every", settings.checkpoint_seconds,
+      .add_option("--checkpoint-every", seconds,
                   "Wall time between checkpoints, from which \"fexp resume\" goes on; 60 when left out, and more where "
                   "they would cost more than 2 % of the time")
       ->check(CLI::Range(0.0, longest))
       ->option_text("SECONDS");
+}
+
+void add_drive_options(CLI::App& options, DriveSettings& settings) {
+  using cluster::PlacementRule;
+  add_checkpoint_option(options, settings.checkpoint_seconds);
   const std::map<std::string, PlacementRule> rules{{"elements", PlacementRule::fewest_elements},
                                                    {"cost", PlacementRule::measured_cost}};
   options

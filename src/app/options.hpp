@@ -15,6 +15,8 @@ void add_deck_option(CLI::App& options, std::string& deck);
 void add_threads_option(CLI::App& options, int& threads);
 void add_json_option(CLI::App& options, bool& json, const char* meaning);
 
+/// Wall time between checkpoints on the disk [s].
+void add_checkpoint_option(CLI::App& options, double& seconds);
 /// How often to save, and where islands go on several machines.
 void add_drive_options(CLI::App& options, DriveSettings& settings);
 

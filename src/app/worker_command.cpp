@@ -167,6 +167,7 @@ ExitCode work_here(const WorkerOptions& options, Ranks& ranks) {
   };
   run.settings.world.writer_only = options.writer_only;
   run.settings.hash_every = greeting.at("options").value("hash_every", std::int64_t{0});
+  run.settings.checkpoint_seconds = greeting.at("options").value("checkpoint_seconds", run.settings.checkpoint_seconds);
   run.settings.quiet = true;
   RunEnd end;
   const ExitCode code = drive(run, end);

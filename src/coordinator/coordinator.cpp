@@ -241,8 +241,6 @@ void Coordinator::launch(const LaunchWorld& world) {
   }
   say(fmt::format("world {} begins on {}", world.world, names_text(world.ranks)));
   settings_.note(fmt::format("{}", fmt::join(command, " ")));
-  launched_ = world;
-  launcher_ = std::make_unique<ChildProcess>(command, environment);
   world_client_.reset();
   worker_status_ = nlohmann::json::object();
   end_reason_.clear();
@@ -252,6 +250,10 @@ void Coordinator::launch(const LaunchWorld& world) {
     record.machines.push_back(to_text(machine));
   }
   settings_.record.worlds.push_back(std::move(record));
+  // Before it begins, so that whoever goes on after this process gives its number to no other one.
+  save();
+  launched_ = world;
+  launcher_ = std::make_unique<ChildProcess>(command, environment);
 }
 
 void Coordinator::probe(Purpose purpose, const Machine& machine, double now, const std::vector<std::string>& more,
@@ -278,10 +280,17 @@ void Coordinator::clean_leftovers() {
   say("ending what is left of the last world");
   std::map<std::string, Machine> machines;
   ErrorList ignored;
-  for (const std::string& text : settings_.record.worlds.back().machines) {
-    const bool is_writer = text.starts_with(writer_name);
-    const Machine machine = is_writer ? Machine{writer_name, "localhost", 1} : parse_machine(text, {}, ignored);
-    machines[machine.name] = machine;
+  const std::vector<WorldRecord>& worlds = settings_.record.worlds;
+  for (const WorldRecord& world : worlds) {
+    for (const std::string& text : world.machines) {
+      const Machine machine =
+          text.starts_with(writer_name) ? Machine{writer_name, "localhost", 1} : parse_machine(text, {}, ignored);
+      // What it keeps in memory is to be forgotten in the end, too.
+      used_[machine.name] = machine;
+      if (&world == &worlds.back()) {
+        machines[machine.name] = machine;
+      }
+    }
   }
   machines.emplace(writer_name, Machine{writer_name, "localhost", 1});
   const double start = now_seconds();

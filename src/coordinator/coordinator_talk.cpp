@@ -61,17 +61,19 @@ void Coordinator::greet(double now, int client, const nlohmann::json& hello) {
     machines.push_back(machine.name);
   }
   world_client_ = client;
-  server_.send(
-      client,
-      {{"run", settings_.run.string()},
-       {"deck", options.deck},
-       {"deck_copy", (settings_.run / "deck.toml").string()},
-       {"run_id", settings_.record.run_id},
-       {"world", world},
-       {"machines", std::move(machines)},
-       {"writer_only", launched_->writer_only},
-       {"events", membership_.event_steps()},
-       {"options", {{"hash_every", options.hash_every}, {"threads", options.threads}, {"quiet", options.quiet}}}});
+  server_.send(client, {{"run", settings_.run.string()},
+                        {"deck", options.deck},
+                        {"deck_copy", (settings_.run / "deck.toml").string()},
+                        {"run_id", settings_.record.run_id},
+                        {"world", world},
+                        {"machines", std::move(machines)},
+                        {"writer_only", launched_->writer_only},
+                        {"events", membership_.event_steps()},
+                        {"options",
+                         {{"hash_every", options.hash_every},
+                          {"checkpoint_seconds", options.checkpoint_seconds},
+                          {"threads", options.threads},
+                          {"quiet", options.quiet}}}});
   membership_.connected(now);
   if (stop_pending_) {
     tell_world("stop");

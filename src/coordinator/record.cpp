@@ -45,9 +45,10 @@ std::vector<Machine> machines_of(const Json& json) {
 }
 
 Json options_json(const ClusterOptions& options) {
-  return {{"deck", options.deck},   {"hosts", options.hosts},          {"discover", options.script},
-          {"agent", options.agent}, {"mpirun", options.mpirun},        {"threads", options.threads},
-          {"quiet", options.quiet}, {"hash_every", options.hash_every}};
+  return {
+      {"deck", options.deck},   {"hosts", options.hosts},           {"discover", options.script},
+      {"agent", options.agent}, {"mpirun", options.mpirun},         {"threads", options.threads},
+      {"quiet", options.quiet}, {"hash_every", options.hash_every}, {"checkpoint_seconds", options.checkpoint_seconds}};
 }
 
 ClusterOptions options_of(const Json& json) {
@@ -60,6 +61,7 @@ ClusterOptions options_of(const Json& json) {
   options.threads = json.at("threads");
   options.quiet = json.at("quiet");
   options.hash_every = json.at("hash_every");
+  options.checkpoint_seconds = json.at("checkpoint_seconds");
   return options;
 }
 

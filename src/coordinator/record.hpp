@@ -21,6 +21,7 @@ struct ClusterOptions {
   std::string mpirun;  ///< More options of mpirun
   int threads{};
   std::int64_t hash_every{};
+  double checkpoint_seconds{60.0};  ///< At least so long between two checkpoints on the disk
   bool quiet{};
 };
 

@@ -150,7 +150,7 @@ void Coordinator::collect_probes(double now) {
     if (answer.purpose == Purpose::check) {
       membership_.checked(now, answer.machine, {reached, answer.words, probe.version, probe.has_mpi});
     } else if (answer.purpose == Purpose::look) {
-      look_answers_.push_back({answer.machine.name, reached, answer.words, probe.heartbeat_age});
+      look_answers_.push_back({answer.machine.name, reached, answer.words, probe.heartbeat_age, probe.has_worker});
     } else if (answer.purpose == Purpose::clean && !reached) {
       unreached_.push_back({answer.machine.name, answer.words});
     }

@@ -221,6 +221,25 @@ void Membership::looked(double now, const std::vector<LookAnswer>& answers) {
     lose(fmt::format("no news for {:.1f} s; {}", now - world_->last_news, words), unreachable);
   } else if (!answers.empty() && youngest > timing.all_stale) {
     lose(fmt::format("no news for {:.1f} s, and no worker runs on any machine", now - world_->last_news), {});
+  } else {
+    look_for_workers(now, answers);
+  }
+}
+
+/// A worker that dies while it starts may escape mpirun, which then waits for it without end.
+void Membership::look_for_workers(double now, const std::vector<LookAnswer>& answers) {
+  constexpr int enough_looks = 2;
+  const auto missing = std::ranges::find(answers, false, &LookAnswer::has_worker);
+  // mpirun starts all workers at once, but daemons on other machines take their time before that.
+  const bool all_own =
+      std::ranges::all_of(world_->ranks, [this](const Machine& machine) { return settings_.is_own(machine.address); });
+  const bool have_begun = all_own || std::ranges::find(answers, true, &LookAnswer::has_worker) != answers.end();
+  world_->looks_without_worker = missing != answers.end() && have_begun ? world_->looks_without_worker + 1 : 0;
+  if (world_->looks_without_worker >= enough_looks) {
+    world_->died_on = missing->machine;
+    world_->killed = true;
+    lose(fmt::format("no news for {:.1f} s, and the worker on {} is gone", now - world_->last_news, missing->machine),
+         {});
   }
 }
 

@@ -39,6 +39,7 @@ struct LookAnswer {
   bool reached{};
   std::string words;                    ///< Why it was not reached
   std::optional<double> heartbeat_age;  ///< [s]; none when its worker has not begun
+  bool has_worker{true};                ///< A process of it is there
 };
 
 /// A machine that could not be reached.
@@ -204,6 +205,7 @@ class Membership {
     std::optional<EndMessage> end;
     std::map<std::string, std::string> culprits;  ///< Machine -> what is wrong with it
     std::string died_on;                          ///< Machine of the rank that died
+    int looks_without_worker{};                   ///< In a row, at a world of which some worker is missing
     bool gained{}, killed{};
   };
 
@@ -215,6 +217,7 @@ class Membership {
   void watch(double now);
   void news(double now, bool counts_as_gap);
   void apply_events(double now, std::int64_t step);
+  void look_for_workers(double now, const std::vector<LookAnswer>& answers);
   void lose(const std::string& words, const std::vector<std::string>& unreachable);
   void settle(double now);
   void settle_loss(double now);

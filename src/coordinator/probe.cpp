@@ -30,8 +30,9 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-std::vector<std::string> command_line_of(const fs::path& process) {
-  std::istringstream text(text_of(process / "cmdline"));
+/// Words that end with a zero each.
+std::vector<std::string> words_of(const fs::path& path) {
+  std::istringstream text(text_of(path));
   std::vector<std::string> words;
   for (std::string word; std::getline(text, word, '\0');) {
     words.push_back(word);
@@ -45,6 +46,8 @@ std::optional<int> number_of(std::string_view text) {
   return error == std::errc{} && end == text.data() + text.size() && !text.empty() ? std::optional(number)
                                                                                    : std::nullopt;
 }
+
+std::vector<std::string> command_line_of(const fs::path& process) { return words_of(process / "cmdline"); }
 
 /// The process above, if it is a launch daemon of this user.
 std::optional<pid_t> daemon_above(const fs::path& process) {
@@ -83,6 +86,23 @@ Found find_workers(const ProbeRequest& request) {
     }
   }
   return found;
+}
+
+/// Whether a worker of the run that goes by this machine's name lives here.
+bool find_own_worker(const ProbeRequest& request) {
+  const std::string host = "FEXP_HOST=" + request.machine;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator("/proc", error)) {
+    if (!number_of(entry.path().filename().string()) ||
+        !world_of_worker(command_line_of(entry.path()), request.run_id)) {
+      continue;
+    }
+    const std::vector<std::string> variables = words_of(entry.path() / "environ");
+    if (std::ranges::find(variables, host) != variables.end()) {
+      return true;
+    }
+  }
+  return false;
 }
 
 int kill_workers(const ProbeRequest& request) {
@@ -162,6 +182,7 @@ Probe probe_here(const ProbeRequest& request, std::string_view kernel) {
     fs::remove_all(machine_memory(request.run_id, request.machine), error);
     fs::remove(run_memory(request.run_id), error);  // Only when no other machine's folder is in it
   }
+  probe.has_worker = find_own_worker(request);
   probe.version = FEXP_VERSION;
   probe.kernel = kernel;
   probe.machine = request.machine;
@@ -179,16 +200,10 @@ Probe probe_here(const ProbeRequest& request, std::string_view kernel) {
 }
 
 nlohmann::json to_json(const Probe& probe) {
-  nlohmann::json json{{"version", probe.version},
-                      {"kernel", probe.kernel},
-                      {"machine", probe.machine},
-                      {"system_name", probe.system_name},
-                      {"mpi", probe.has_mpi},
-                      {"threads", probe.threads},
-                      {"memory_free", probe.memory_free},
-                      {"alive_age_s", nullptr},
-                      {"snapshots", probe.snapshots},
-                      {"killed", probe.killed}};
+  nlohmann::json json{{"version", probe.version},         {"kernel", probe.kernel},    {"machine", probe.machine},
+                      {"system_name", probe.system_name}, {"mpi", probe.has_mpi},      {"threads", probe.threads},
+                      {"memory_free", probe.memory_free}, {"alive_age_s", nullptr},    {"snapshots", probe.snapshots},
+                      {"killed", probe.killed},           {"worker", probe.has_worker}};
   if (probe.heartbeat_age) {
     json["alive_age_s"] = *probe.heartbeat_age;
   }
@@ -215,6 +230,7 @@ std::optional<Probe> read_probe(std::string_view text) {
     }
     probe.snapshots = json.value("snapshots", std::vector<std::string>{});
     probe.killed = json.value("killed", 0);
+    probe.has_worker = json.value("worker", true);
     return probe;
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;

@@ -410,6 +410,33 @@ TEST(membership, a_machine_that_is_cut_off_is_left_out_and_not_waited_for) {
   EXPECT_EQ(scene.ranks(), (Names{"here", "a"}));
 }
 
+TEST(membership, a_world_that_misses_a_worker_twice_is_lost_without_waiting_for_mpirun) {
+  Scene scene;
+  scene.want("a", "node-a");
+  scene.launches.clear();
+  const std::vector<LookAnswer> answers{{"_writer", true, "", {}, true}, {"a", true, "", {}, false}};
+  scene.pass(3.2);
+  scene.look(answers);
+  EXPECT_TRUE(scene.kills.empty()) << "it may be about to start";
+  scene.pass(3.2);
+  scene.look(answers);
+  ASSERT_EQ(scene.kills.size(), 1U);
+  EXPECT_NE(scene.told.find("the worker on a is gone"), std::string::npos);
+  scene.clean();
+  ASSERT_EQ(scene.launches.size(), 1U);
+  EXPECT_EQ(scene.ranks(), (Names{"_writer", "a"}));
+}
+
+TEST(membership, daemons_on_other_machines_have_time_to_start_the_first_worker) {
+  Scene scene;
+  scene.want("a", "node-a");
+  for (int look = 0; look < 5; ++look) {
+    scene.pass(3.2);
+    scene.look({{"_writer", true, "", {}, false}, {"a", true, "", {}, false}});
+    EXPECT_TRUE(scene.kills.empty());
+  }
+}
+
 TEST(membership, a_world_whose_machines_are_all_well_is_left_alone) {
   Scene scene = three();
   scene.pass(3.2);

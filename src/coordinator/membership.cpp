@@ -226,7 +226,8 @@ void Membership::looked(double now, const std::vector<LookAnswer>& answers) {
   }
 }
 
-/// A worker that dies while it starts may escape mpirun, which then waits for it without end.
+/// A worker that dies while it starts may escape mpirun, which then waits for it without end. One that is stopped then
+/// has no heartbeat yet that could tell.
 void Membership::look_for_workers(double now, const std::vector<LookAnswer>& answers) {
   constexpr int enough_looks = 2;
   const auto missing = std::ranges::find(answers, false, &LookAnswer::has_worker);
@@ -238,7 +239,8 @@ void Membership::look_for_workers(double now, const std::vector<LookAnswer>& ans
   if (world_->looks_without_worker >= enough_looks) {
     world_->died_on = missing->machine;
     world_->killed = true;
-    lose(fmt::format("no news for {:.1f} s, and the worker on {} is gone", now - world_->last_news, missing->machine),
+    lose(fmt::format("no news for {:.1f} s, and the worker on {} is gone or stopped", now - world_->last_news,
+                     missing->machine),
          {});
   }
 }

@@ -39,7 +39,7 @@ struct LookAnswer {
   bool reached{};
   std::string words;                    ///< Why it was not reached
   std::optional<double> heartbeat_age;  ///< [s]; none when its worker has not begun
-  bool has_worker{true};                ///< A process of it is there
+  bool has_worker{true};                ///< A process of it is there and not stopped
 };
 
 /// A machine that could not be reached.

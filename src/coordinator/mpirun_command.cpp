@@ -91,7 +91,10 @@ std::string last_words(std::string_view output) {
 }
 
 /// Whether the signal comes from a user or from the system, rather than from an error of the program.
-bool is_from_outside(std::optional<int> signal) { return signal == SIGKILL || signal == SIGTERM; }
+bool is_from_outside(std::optional<int> signal) {
+  const int number = signal.value_or(0);
+  return number == SIGKILL || number == SIGTERM;
+}
 
 }  // namespace
 

@@ -49,14 +49,23 @@ std::optional<int> number_of(std::string_view text) {
 
 std::vector<std::string> command_line_of(const fs::path& process) { return words_of(process / "cmdline"); }
 
-/// The process above, if it is a launch daemon of this user.
-std::optional<pid_t> daemon_above(const fs::path& process) {
+struct ProcessState {
+  char letter{' '};  ///< As ps prints it
+  pid_t parent{};
+};
+
+ProcessState state_of(const fs::path& process) {
   const std::string stat = text_of(process / "stat");
   // "id (name) state parent ..."; the name may hold anything.
   std::istringstream rest(stat.substr(std::min(stat.rfind(')') + 1, stat.size())));
-  char state = ' ';
-  pid_t parent = 0;
-  rest >> state >> parent;
+  ProcessState state;
+  rest >> state.letter >> state.parent;
+  return state;
+}
+
+/// The process above, if it is a launch daemon of this user.
+std::optional<pid_t> daemon_above(const fs::path& process) {
+  const pid_t parent = state_of(process).parent;
   struct stat owner {};
   const fs::path above = "/proc/" + std::to_string(parent);
   const bool is_ours = ::stat(above.c_str(), &owner) == 0 && owner.st_uid == getuid();
@@ -88,21 +97,18 @@ Found find_workers(const ProbeRequest& request) {
   return found;
 }
 
-/// Whether a worker of the run that goes by this machine's name lives here.
+/// Whether a worker of the run that goes by this machine's name lives here and has not been stopped.
 bool find_own_worker(const ProbeRequest& request) {
   const std::string host = "FEXP_HOST=" + request.machine;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator("/proc", error)) {
+  return std::ranges::any_of(fs::directory_iterator("/proc", error), [&](const fs::directory_entry& entry) {
     if (!number_of(entry.path().filename().string()) ||
-        !world_of_worker(command_line_of(entry.path()), request.run_id)) {
-      continue;
+        !world_of_worker(command_line_of(entry.path()), request.run_id) || state_of(entry.path()).letter == 'T') {
+      return false;
     }
     const std::vector<std::string> variables = words_of(entry.path() / "environ");
-    if (std::ranges::find(variables, host) != variables.end()) {
-      return true;
-    }
-  }
-  return false;
+    return std::ranges::find(variables, host) != variables.end();
+  });
 }
 
 int kill_workers(const ProbeRequest& request) {

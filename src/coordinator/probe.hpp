@@ -22,7 +22,7 @@ struct Probe {
   std::optional<double> heartbeat_age;  ///< [s]; none: no worker of the run was here
   std::vector<std::string> snapshots;   ///< Names of files, sorted
   int killed{};                         ///< Workers ended
-  bool has_worker{};                    ///< A worker of the run lives there, for this machine
+  bool has_worker{};                    ///< A worker of the run lives there, for this machine, and is not stopped
 };
 
 /// What is to be done before a machine tells of itself.

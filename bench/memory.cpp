@@ -8,6 +8,7 @@
 #include "cases.hpp"
 #include "cluster/simulation.hpp"
 #include "parallel/parallel.hpp"
+#include "resident_memory.hpp"
 
 /// Memory of a model and its run, in bytes per element. The resident memory is the process's largest, so every case
 /// needs a process of its own, which run.py sees to.
@@ -21,21 +22,8 @@ double bytes_in_use() {
   return static_cast<double>(now.uordblks) + static_cast<double>(now.hblkhd);
 }
 
-/// Largest resident memory since the program was started, unlike getrusage's, which knows the parent's too.
-double most_resident_bytes() {
-  std::ifstream status("/proc/self/status");
-  std::string word;
-  double kilobytes = 0.0;
-  while (status >> word) {
-    if (word == "VmHWM:") {
-      status >> kilobytes;
-    }
-  }
-  return 1024.0 * kilobytes;
-}
-
 void memory(benchmark::State& state, Scene scene) {
-  const double resident_before = most_resident_bytes();
+  const double resident_before = fexp::bench::most_resident_bytes();
   for (auto iteration : state) {
     fexp::parallel::with_threads(2, [&] {
       const double at_start = bytes_in_use();
@@ -58,7 +46,7 @@ void memory(benchmark::State& state, Scene scene) {
       state.counters["state"] = state_bytes / elements;
       state.counters["workspace"] = workspace_bytes / elements;
       state.counters["run"] = (bytes_in_use() - at_start) / elements;
-      state.counters["resident"] = (most_resident_bytes() - resident_before) / elements;
+      state.counters["resident"] = (fexp::bench::most_resident_bytes() - resident_before) / elements;
     });
   }
 }

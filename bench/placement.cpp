@@ -14,6 +14,7 @@
 #include "cluster/placement.hpp"
 #include "cluster/rank_record.hpp"
 #include "parallel/parallel.hpp"
+#include "resident_memory.hpp"
 
 /// What every rank does at an epoch's start, for many more bodies and machines than a test has: the interaction graph
 /// and the placement of its islands.
@@ -28,19 +29,6 @@ namespace model = fexp::model;
 /// Elements of a body, and the canonical bytes of its state: a sphere of 192 triangles and 98 nodes.
 constexpr double body_elements = 192.0;
 constexpr double body_bytes = 98.0 * 15.0 * 8.0 + 192.0 * 12.0 * 8.0 + 88.0;
-
-/// Largest resident memory of the process: every case needs one of its own, which run.py sees to.
-double most_resident_bytes() {
-  std::ifstream status("/proc/self/status");
-  std::string word;
-  double kilobytes = 0.0;
-  while (status >> word) {
-    if (word == "VmHWM:") {
-      status >> kilobytes;
-    }
-  }
-  return 1024.0 * kilobytes;
-}
 
 /// Processor time of one iteration.
 double milliseconds_since(std::clock_t start, const benchmark::State& state) {
@@ -87,7 +75,7 @@ void graph(benchmark::State& state, Packing packing) {
   state.counters["bodies"] = static_cast<double>(boxes.swept.size());
   state.counters["islands"] = static_cast<double>(islands.size());
   state.counters["cpu_milliseconds"] = milliseconds_since(start, state);
-  state.counters["resident_megabytes"] = 1.0e-6 * most_resident_bytes();
+  state.counters["resident_megabytes"] = 1.0e-6 * fexp::bench::most_resident_bytes();
 }
 
 std::vector<Island> islands_of(const std::vector<std::vector<Index>>& lists) {
@@ -168,7 +156,7 @@ void place(benchmark::State& state, PlacementRule rule) {
   state.counters["bodies"] = bodies;
   state.counters["machines"] = static_cast<double>(machine_count);
   state.counters["cpu_milliseconds"] = milliseconds;
-  state.counters["resident_megabytes"] = 1.0e-6 * most_resident_bytes();
+  state.counters["resident_megabytes"] = 1.0e-6 * fexp::bench::most_resident_bytes();
   state.counters["imbalance_at_start"] = imbalance(start.owner, machine_count);
   state.counters["imbalance"] = imbalance(next.owner, machine_count);
   state.counters["moved_bodies"] = moved;

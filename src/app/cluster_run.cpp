@@ -28,6 +28,7 @@
 #include "io/input_files.hpp"
 #include "io/output_error.hpp"
 #include "io/run_directory.hpp"
+#include "io/summary.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::app {
@@ -190,14 +191,6 @@ std::string read_deck(const std::string& deck, io::InputFiles& files) {
   return bytes;
 }
 
-bool is_complete(const io::RunDirectory& directory) {
-  if (!fs::exists(directory.summary())) {
-    return false;
-  }
-  const auto summary = nlohmann::json::parse(io::read_whole(directory.summary()), nullptr, false);
-  return summary.is_object() && summary.value("completed", false);
-}
-
 /// Removes what an earlier cluster run wrote there, unless it is still alive.
 void clear_earlier_cluster_run(const ClusterRunOptions& options) {
   const fs::path run = options.out.empty() ? fs::path(options.deck).stem().string() + ".run" : options.out;
@@ -252,7 +245,7 @@ ExitCode cluster_resume(const ClusterResumeOptions& options) {
   ClusterRecord record = coordinator::read_record(directory.path());
   const coordinator::RunLock lock(directory.path());
   record = coordinator::read_record(directory.path());  // As it is now that nobody else writes it
-  if (record.state == "running" && is_complete(directory)) {
+  if (record.state == "running" && io::is_completed(directory.summary())) {
     // The coordinator was lost before it heard of the end.
     record.state = "completed";
     coordinator::write_record(directory.path(), record);

@@ -3,21 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <exception>
 #include <optional>
 
 #include "app/saved_run.hpp"
 #include "app/signals.hpp"
+#include "base/stopwatch.hpp"
 #include "io/output_error.hpp"
 
 namespace fexp::app {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 std::vector<Index> all_bodies(const model::Model& model) {
   std::vector<Index> bodies;

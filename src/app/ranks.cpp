@@ -2,7 +2,6 @@
 #include "app/ranks.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,6 +11,7 @@
 #include <thread>
 
 #include "base/byte_stream.hpp"
+#include "coordinator/places.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::app {
@@ -63,9 +63,7 @@ std::string machine_name() {
   if (given != nullptr && *given != '\0') {
     return given;
   }
-  char host[256] = "localhost";
-  gethostname(host, sizeof(host) - 1);
-  return host;
+  return coordinator::own_name();
 }
 
 Ranks::Ranks() {

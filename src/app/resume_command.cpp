@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -18,10 +17,10 @@
 #include "app/with_ranks.hpp"
 #include "base/errors.hpp"
 #include "coordinator/record.hpp"
-#include "io/atomic_file.hpp"
 #include "io/checkpoint_files.hpp"
 #include "io/output_error.hpp"
 #include "io/run_directory.hpp"
+#include "io/summary.hpp"
 
 namespace fexp::app {
 
@@ -45,11 +44,8 @@ void check_run(const io::RunDirectory& directory) {
   } else if (!fs::exists(directory.inputs(), error)) {
     errors.add({name}, "it has no inputs.fexp, so it is no run of this program", "the directory of a run",
                "check the path");
-  } else if (fs::exists(directory.summary(), error)) {
-    const auto summary = nlohmann::json::parse(io::read_whole(directory.summary()), nullptr, false);
-    if (summary.is_object() && summary.value("completed", false)) {
-      errors.add({name}, "the run is complete", "a run that was interrupted", "nothing is left to be done");
-    }
+  } else if (io::is_completed(directory.summary())) {
+    errors.add({name}, "the run is complete", "a run that was interrupted", "nothing is left to be done");
   }
   errors.throw_if_any();
 }
@@ -61,8 +57,7 @@ struct Found {
 
 Found find(const io::RunDirectory& directory) {
   check_run(directory);
-  const std::string packed = io::read_whole(directory.inputs());
-  Found found{io::InputFiles::unpack(std::as_bytes(std::span(packed.data(), packed.size())), directory.inputs()), {}};
+  Found found{io::InputFiles::packed_in(directory.inputs()), {}};
   const io::FoundCheckpoint checkpoint = io::CheckpointFiles(directory.checkpoints()).newest();
   for (const std::string& sentence : checkpoint.passed_over) {
     print_error("fexp: " + sentence + "\n");

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -16,6 +15,7 @@
 #include "app/run_summary.hpp"
 #include "app/schedule.hpp"
 #include "app/signals.hpp"
+#include "base/stopwatch.hpp"
 #include "io/checkpoint_files.hpp"
 #include "io/output_error.hpp"
 #include "io/summary.hpp"
@@ -24,8 +24,6 @@
 namespace fexp::app {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 void note_output_error(const io::OutputError& error, RunEnd& end) {
   end.reason = EndReason::output_error;
@@ -111,7 +109,7 @@ ExitCode report(const Drive& run, const cluster::Simulation& simulation, const K
     summary.ranks = run.ranks.size();
     summary.frames = frames;
     summary.files = files_of(run.directory);
-    summary.wall_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    summary.wall_seconds = seconds_since(start);
     summary.network.snapshot_share =
         (keeper.memory_clock().total_seconds() + keeper.disk_clock().total_seconds()) / summary.wall_seconds;
   };
@@ -173,7 +171,6 @@ ExitCode drive(const Drive& run, RunEnd& end) {
                    run.taken_up.has_value(), failure},
                   end);
   }
-  simulation->collect();
   if (output) {
     output->log(end.reason == EndReason::completed ? "completed" : end.message);
   }

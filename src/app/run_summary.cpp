@@ -13,22 +13,6 @@ namespace fexp::app {
 
 namespace {
 
-const char* name_of(EndReason reason) {
-  switch (reason) {
-    case EndReason::completed:
-      return "completed";
-    case EndReason::fault:
-      return "fault";
-    case EndReason::interrupted:
-      return "interrupted";
-    case EndReason::output_error:
-      return "output error";
-    case EndReason::reform:
-      return "reform";
-  }
-  return "";
-}
-
 void add_extremes(const cluster::RunExtremes& x, io::Summary& summary) {
   summary.energy_error = x.energy_error;
   summary.linear_momentum_error = x.linear_momentum_error;

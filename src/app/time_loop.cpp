@@ -10,6 +10,7 @@
 #include "app/balance_text.hpp"
 #include "app/schedule.hpp"
 #include "app/signals.hpp"
+#include "base/stopwatch.hpp"
 #include "io/output_error.hpp"
 
 namespace fexp::app {
@@ -59,11 +60,13 @@ class Loop {
     cluster::Simulation& simulation = parts_.simulation;
     cluster::Requests requests = parts_.keeper.ask(simulation);
     requests.output_error = failed_;
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     end_.last = simulation.run_epoch(schedule_.next(), parts_.hash_every, requests);
-    end_.stepping_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    end_.stepping_seconds += seconds_since(start);
+    // On all ranks, or they would pile up where nobody logs them.
+    const std::vector<cluster::LedgerMove> moves = simulation.ledger().take_moves();
     write([&] {
-      log_moves();
+      log_moves(moves);
       output_->epoch(end_.last);
     });
     if (end_.last.fault.kind != cluster::FaultKind::none) {
@@ -129,8 +132,8 @@ class Loop {
     write([&] { output_->frame(parts_.simulation, end_.last); });
   }
 
-  void log_moves() {
-    for (const cluster::LedgerMove& moved : parts_.simulation.ledger().take_moves()) {
+  void log_moves(const std::vector<cluster::LedgerMove>& moves) {
+    for (const cluster::LedgerMove& moved : moves) {
       const auto& machines = parts_.simulation.world().machines;
       const auto name = [&](cluster::MachineIndex m) { return machines[static_cast<std::size_t>(m)].name; };
       output_->log(fmt::format("step {}: body \"{}\" moves from {} to {}: {}", moved.step,
@@ -217,6 +220,22 @@ void Loop::tell_status() {
 }
 
 }  // namespace
+
+const char* name_of(EndReason reason) noexcept {
+  switch (reason) {
+    case EndReason::completed:
+      return "completed";
+    case EndReason::fault:
+      return "fault";
+    case EndReason::interrupted:
+      return "interrupted";
+    case EndReason::output_error:
+      return "output error";
+    case EndReason::reform:
+      return "reform";
+  }
+  return "";
+}
 
 void run_time_loop(const LoopParts& parts, RunEnd& end) { Loop(parts, end).run(); }
 

@@ -16,6 +16,9 @@ namespace fexp::app {
 /// reform: another world of machines is to go on.
 enum class EndReason { completed, fault, interrupted, output_error, reform };
 
+/// In words: "output error".
+[[nodiscard]] const char* name_of(EndReason reason) noexcept;
+
 /// Why a run, or a world of it, ended, and where it stood.
 struct RunEnd {
   EndReason reason{EndReason::completed};
@@ -41,8 +44,9 @@ struct LoopParts {
 };
 
 /// Steps from the present time to the end of the duration, or until a fault, a signal or another request, and writes
-/// frames and rows at the deck's output times, at the start and at the end. All ranks together. Files that cannot be
-/// written end the run on all ranks, with EndReason::output_error.
+/// frames and rows at the deck's output times, at the start and at the end. All ranks together; afterwards rank 0 has
+/// the whole state, unless another world is to go on. Files that cannot be written end the run on all ranks, with
+/// EndReason::output_error.
 void run_time_loop(const LoopParts& parts, RunEnd& end);
 
 }  // namespace fexp::app

@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,7 +22,6 @@
 #include "app/worker_link.hpp"
 #include "coordinator/control_channel.hpp"
 #include "coordinator/places.hpp"
-#include "io/atomic_file.hpp"
 #include "io/checkpoint_files.hpp"
 #include "io/output_error.hpp"
 #include "io/run_directory.hpp"
@@ -119,22 +119,6 @@ std::optional<TakenUp> find_moment(Ranks& ranks, const MemorySnapshots& snapshot
   return taken_up;
 }
 
-const char* reason_text(EndReason reason) {
-  switch (reason) {
-    case EndReason::completed:
-      return "completed";
-    case EndReason::fault:
-      return "fault";
-    case EndReason::interrupted:
-      return "interrupted";
-    case EndReason::output_error:
-      return "output_error";
-    case EndReason::reform:
-      return "reform";
-  }
-  return "";
-}
-
 ExitCode work_here(const WorkerOptions& options, Ranks& ranks) {
   const std::string machine = machine_name();
   coordinator::make_private_directory(coordinator::machine_memory(options.run_id, machine));
@@ -149,10 +133,7 @@ ExitCode work_here(const WorkerOptions& options, Ranks& ranks) {
   WorkerLink link(std::move(channel), greeting.at("events").get<std::vector<std::int64_t>>());
   const io::RunDirectory directory(greeting.at("run").get<std::string>());
   io::InputFiles files;
-  ranks.on_first([&] {
-    const std::string packed = io::read_whole(directory.inputs());
-    files = io::InputFiles::unpack(std::as_bytes(std::span(packed.data(), packed.size())), directory.inputs());
-  });
+  ranks.on_first([&] { files = io::InputFiles::packed_in(directory.inputs()); });
   const Case loaded = ranks.load(files.deck(), files);
   MemorySnapshots snapshots(coordinator::snapshot_folder(options.run_id, machine), machine, ranks.communicator());
   TakeUps take_ups;
@@ -171,8 +152,11 @@ ExitCode work_here(const WorkerOptions& options, Ranks& ranks) {
   run.settings.quiet = true;
   RunEnd end;
   const ExitCode code = drive(run, end);
+  // One word in messages.
+  std::string reason = name_of(end.reason);
+  std::ranges::replace(reason, ' ', '_');
   link.send({{"event", "ended"},
-             {"reason", reason_text(end.reason)},
+             {"reason", reason},
              {"exit_code", static_cast<int>(code)},
              {"message", end.message},
              {"step", end.last_step}});

@@ -5,15 +5,9 @@
 #include <cstring>
 #include <thread>
 
+#include "base/stopwatch.hpp"
+
 namespace fexp::cluster {
-
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-}  // namespace
 
 Bytes Communicator::all_gather(std::span<const std::byte> own, std::span<const std::size_t> sizes) {
   const auto start = Clock::now();

@@ -2,8 +2,10 @@
 #include "cluster/simulation.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 
+#include "base/hash.hpp"
+#include "base/stopwatch.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::cluster {
@@ -17,11 +19,20 @@ constexpr int most_attempts = 40;
 /// A step equal to the stable one but for rounding is stable.
 constexpr double rounding = 1.0 + 1.0e-9;
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 double frequency2(const solve::CriticalStep& critical) noexcept { return 4.0 / (critical.step * critical.step); }
+
+/// Tells models apart: a snapshot fits the model that it was made with and no other.
+std::uint64_t fingerprint(const model::Model& model) {
+  const std::array<std::uint64_t, 3> parts{hash_bytes(std::as_bytes(std::span(model.reference_position))),
+                                           hash_bytes(std::as_bytes(std::span(model.mass))),
+                                           hash_bytes(std::as_bytes(std::span(model.triangle)))};
+  ByteWriter out;
+  out.value(parts);
+  out.value(static_cast<std::uint64_t>(model.bodies.size()));
+  out.value(model.run.duration);
+  out.value(model.run.safety);
+  return hash_bytes(out.bytes());
+}
 
 double relative(double error, double scale) noexcept { return scale > 0.0 ? std::abs(error) / scale : 0.0; }
 
@@ -40,6 +51,7 @@ struct Simulation::Attempt {
 /// No body placed or evaluated yet. Every rank has the whole state of the start, so the notices need not be told.
 Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, World world, Blank /*blank*/)
     : model_(model),
+      fingerprint_(fingerprint(model)),
       world_(std::move(world)),
       state_(model::initial_state(model)),
       backup_(state_),

@@ -134,6 +134,7 @@ class Simulation {
   [[nodiscard]] Fault energy_fault(const EpochReport& report);
 
   const model::Model& model_;
+  std::uint64_t fingerprint_;  ///< Of the model, in snapshots
   World world_;
   model::State state_;
   model::State backup_;

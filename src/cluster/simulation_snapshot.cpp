@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "base/hash.hpp"
 #include "cluster/shipment.hpp"
 #include "cluster/simulation.hpp"
 #include "parallel/parallel.hpp"
@@ -13,18 +12,6 @@ namespace fexp::cluster {
 namespace {
 
 constexpr std::uint64_t format_version = 1;
-
-/// Tells models apart: a snapshot fits the model that it was made with and no other.
-std::uint64_t fingerprint(const model::Model& model) {
-  ByteWriter out;
-  out.list(model.reference_position);
-  out.list(model.mass);
-  out.list(model.triangle);
-  out.value(static_cast<std::uint64_t>(model.bodies.size()));
-  out.value(model.run.duration);
-  out.value(model.run.safety);
-  return hash_bytes(out.bytes());
-}
 
 /// Step and time stand first in what is packed of a run.
 bool same_moment(std::span<const std::byte> a, std::span<const std::byte> b) {
@@ -61,7 +48,7 @@ void Simulation::pack_run(ByteWriter& out) const {
 Bytes Simulation::piece(std::span<const Index> bodies) const {
   ByteWriter out;
   out.value(format_version);
-  out.value(fingerprint(model_));
+  out.value(fingerprint_);
   ByteWriter run;
   pack_run(run);
   out.list(run.bytes());
@@ -165,7 +152,7 @@ void Simulation::read_piece(std::span<const std::byte> piece, Bytes& run, std::v
   if (in.value<std::uint64_t>() != format_version) {
     refuse("it is of another format");
   }
-  if (in.value<std::uint64_t>() != fingerprint(model_)) {
+  if (in.value<std::uint64_t>() != fingerprint_) {
     refuse("it is of another model");
   }
   const Bytes of_run = in.list<std::byte>();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
 #include <thread>
 
+#include "base/stopwatch.hpp"
 #include "cluster/shipment.hpp"
 #include "cluster/simulation.hpp"
 #include "parallel/parallel.hpp"
@@ -45,12 +45,10 @@ bool same_bodies(const std::vector<Island>& a, const std::vector<Island>& b) {
 }  // namespace
 
 World World::alone() {
-  char host[256] = "localhost";
-  gethostname(host, sizeof(host) - 1);
   World world;
   world.communicator = std::make_shared<LoneCommunicator>();
   Machine machine;
-  machine.name = host;
+  machine.name = "localhost";
   machine.rank = 0;
   machine.threads = parallel::thread_count();
   machine.native_threads = static_cast<int>(std::thread::hardware_concurrency());
@@ -110,7 +108,6 @@ void Simulation::move_bodies(const std::vector<MachineIndex>& owner) {
     }
   }
   moved_bytes_ += ship_bodies(*world_.communicator, model_, shipments, state_);
-  find_own_bodies();
 }
 
 void Simulation::find_own_bodies() {
@@ -300,13 +297,13 @@ void Simulation::collect() {
 void Simulation::begin_load() {
   load_ = {};
   load_.busy_seconds.assign(world_.machines.size(), 0.0);
-  began_ = std::chrono::steady_clock::now();
+  began_ = Clock::now();
   told_ = world_.communicator->traffic();
 }
 
 WorldLoad Simulation::load() const {
   WorldLoad load = load_;
-  load.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+  load.seconds = seconds_since(began_);
   std::vector<MachineIndex> owner;
   for (const Island& island : islands_) {
     owner.push_back(owner_[at(island.bodies.front())]);

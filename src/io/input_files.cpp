@@ -43,6 +43,11 @@ void check_head(std::span<const Section> sections, const fs::path& origin) {
 
 }  // namespace
 
+InputFiles InputFiles::packed_in(const fs::path& file) {
+  const std::string bytes = read_whole(file);
+  return unpack(std::as_bytes(std::span(bytes)), file);
+}
+
 InputFiles InputFiles::unpack(std::span<const std::byte> bytes, const fs::path& origin) {
   const std::vector<Section> sections = unpack_sections(bytes, origin);
   check_head(sections, origin);

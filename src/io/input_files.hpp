@@ -20,6 +20,9 @@ class InputFiles {
   /// Serves what pack() has packed and nothing else. `origin` is the name of the bytes in errors. Throws OutputError.
   [[nodiscard]] static InputFiles unpack(std::span<const std::byte> bytes, const std::filesystem::path& origin);
 
+  /// Likewise, from a file of such bytes.
+  [[nodiscard]] static InputFiles packed_in(const std::filesystem::path& file);
+
   enum class Kind { file, missing, directory, other };
   [[nodiscard]] Kind kind(const std::filesystem::path& path) const;
   [[nodiscard]] bool from_memory() const noexcept { return from_memory_; }

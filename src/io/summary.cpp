@@ -2,6 +2,7 @@
 #include "io/summary.hpp"
 
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "io/atomic_file.hpp"
 
@@ -116,6 +117,15 @@ ordered_json to_json(const Summary& s) {
   }
   json["files"] = std::move(files);
   return json;
+}
+
+bool is_completed(const std::filesystem::path& summary) {
+  std::error_code error;
+  if (!std::filesystem::exists(summary, error)) {
+    return false;
+  }
+  const auto json = nlohmann::json::parse(read_whole(summary), nullptr, false);
+  return json.is_object() && json.value("completed", false);
 }
 
 void write_summary(const std::filesystem::path& path, const Summary& summary) {

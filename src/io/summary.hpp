@@ -107,4 +107,7 @@ struct Summary {
 /// Replaces `path` by the summary as a whole. Throws OutputError.
 void write_summary(const std::filesystem::path& path, const Summary& summary);
 
+/// Whether the summary, if there is one, is of a run that went to its end. Throws OutputError when it cannot be read.
+[[nodiscard]] bool is_completed(const std::filesystem::path& summary);
+
 }  // namespace fexp::io

@@ -4,22 +4,13 @@
 #include <vector>
 
 #include "cluster/placement.hpp"
+#include "support/machines.hpp"
 
 namespace fexp::cluster {
 namespace {
 
+using test::machines_of;
 using Owners = std::vector<MachineIndex>;
-
-std::vector<Machine> machines_of(const std::vector<double>& speeds) {
-  std::vector<Machine> machines;
-  for (const double speed : speeds) {
-    Machine machine;
-    machine.rank = static_cast<int>(machines.size());
-    machine.speed = speed;
-    machines.push_back(machine);
-  }
-  return machines;
-}
 
 TEST(balance, an_island_of_five_sixths_of_the_work_keeps_two_machines_busy_at_most) {
   const BalanceReport report = judge_balance(std::vector{0.83, 0.10, 0.07}, Owners{0, 0, 0}, machines_of({1}));

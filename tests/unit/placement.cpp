@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cluster/placement.hpp"
+#include "support/machines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +13,7 @@ namespace fexp::cluster {
 namespace {
 
 using Lists = std::vector<std::vector<Index>>;
+using test::machines_of;
 using Owners = std::vector<MachineIndex>;
 
 constexpr auto elements = PlacementRule::fewest_elements;
@@ -23,17 +25,6 @@ std::vector<Island> islands_of(const Lists& lists) {
     islands.push_back({bodies, {}});
   }
   return islands;
-}
-
-std::vector<Machine> machines_of(const std::vector<double>& speeds) {
-  std::vector<Machine> machines;
-  for (const double speed : speeds) {
-    Machine machine;
-    machine.rank = static_cast<int>(machines.size());
-    machine.speed = speed;
-    machines.push_back(machine);
-  }
-  return machines;
 }
 
 /// A run as far as placement sees it.

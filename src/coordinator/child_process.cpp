@@ -13,7 +13,6 @@
 #include <csignal>
 #include <cstring>
 #include <string_view>
-#include <system_error>
 
 extern char** environ;  // NOLINT(readability-redundant-declaration)
 
@@ -124,7 +123,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words,
   if (id_ < 0) {
     exited_ = true;
     status_ = cannot_start << 8;
-    errors_ = fmt::format("cannot start {}: {}\n", words.front(), std::generic_category().message(failure));
+    errors_ = fmt::format("cannot start {}: {}\n", words.front(), strerrordesc_np(failure));
     return;
   }
   // Here too, so that the group is there before the first signal to it.

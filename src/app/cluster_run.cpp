@@ -18,6 +18,7 @@
 #include "app/load.hpp"
 #include "app/print.hpp"
 #include "app/signals.hpp"
+#include "app/thread_table.hpp"
 #include "base/errors.hpp"
 #include "coordinator/coordinator.hpp"
 #include "coordinator/host_source.hpp"
@@ -137,7 +138,7 @@ std::vector<std::string> worker_program() {
 
 std::string absolute(const std::string& path) { return path.empty() ? "" : fs::absolute(path).string(); }
 
-ExitCode report(const coordinator::FinishRun& end, const io::RunDirectory& directory, bool quiet, bool json) {
+ExitCode report(const coordinator::FinishRun& end, const io::RunDirectory& directory, bool json) {
   const std::string run = directory.path().string();
   const std::string again = fmt::format("\"fexp cluster resume {}\" goes on.", run);
   if (json && fs::exists(directory.summary())) {
@@ -145,9 +146,6 @@ ExitCode report(const coordinator::FinishRun& end, const io::RunDirectory& direc
   }
   switch (end.outcome) {
     case Outcome::completed:
-      if (!quiet && !json) {
-        print_out(fmt::format("completed; the results are in {}\n", run));
-      }
       return ExitCode::done;
     case Outcome::fault:
       print_error(fmt::format("fexp: the run stopped: {}\nWhat came before it is in {}.\n", end.message, run));
@@ -176,12 +174,19 @@ ExitCode coordinate(const io::RunDirectory& directory, const ClusterRecord& reco
   settings.progress = [&](const nlohmann::json& status) { voice.progress(status); };
   settings.signal = [] { return SignalWatch::received(); };
   coordinator::FinishRun end;
+  std::string summary;
   {
     coordinator::Coordinator coordinator(std::move(settings));
     voice.say(fmt::format("the run is in {}; see \"fexp cluster status\"", directory.path().string()));
     end = coordinator.run();
+    summary = coordinator.summary();
   }
-  return report(end, directory, quiet, json);
+  const ClusterRecord last = coordinator::read_record(directory.path());
+  write_thread_table(directory, last);
+  if (!quiet && !json) {
+    print_out(summary + thread_table(last));
+  }
+  return report(end, directory, json);
 }
 
 /// The deck as the run's machines will read it. Wrong input ends here, before anything is launched.

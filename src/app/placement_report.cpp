@@ -33,7 +33,8 @@ Placement placement_of(const cluster::Simulation& simulation) {
   const cluster::WorldLoad load = simulation.load();
   for (std::size_t m = 0; m < simulation.world().machines.size(); ++m) {
     const cluster::Machine& machine = simulation.world().machines[m];
-    placement.machines.push_back({machine.name, machine.threads, machine.native_threads, load.busy_seconds[m]});
+    placement.machines.push_back(
+        {machine.name, machine.threads, machine.native_threads, load.running_threads[m], load.busy_seconds[m]});
   }
   for (const cluster::PlacementFrame& frame : ledger.frames()) {
     placement.frames.push_back({frame.step,
@@ -44,6 +45,7 @@ Placement placement_of(const cluster::Simulation& simulation) {
                                 frame.moved_elements,
                                 frame.moved_nodes});
   }
+  placement.frames_left_out = ledger.frames_left_out();
   placement.moved_elements = ledger.moved_elements();
   placement.moved_nodes = ledger.moved_nodes();
   placement.moved_bytes = ledger.moved_bytes();
@@ -78,20 +80,14 @@ std::string placement_text(const Placement& placement, const io::UnitNames& unit
   for (std::size_t i = 0; i < rows; ++i) {
     if (rows > most_rows && i == most_rows / 2) {
       i = rows - most_rows / 2;
-      text += fmt::format("  ... {} more in placement.csv\n", rows - most_rows);
+      text += fmt::format("  ... {} more, see placement.csv\n",
+                          rows - most_rows + static_cast<std::size_t>(placement.frames_left_out));
     }
     text += frame_row(placement, placement.frames[i]);
   }
   text += fmt::format("  moved: {} elements and {} nodes, {:.3g} of the model, {} bytes on the wire\n",
                       placement.moved_elements, placement.moved_nodes, placement.moved_ratio, placement.moved_bytes);
-  int threads = 0, computing = 0;
-  for (const Placement::MachineLine& machine : placement.machines) {
-    text += fmt::format("  {}: {} native threads, {} compute, 1 talks\n", machine.name, machine.native_threads,
-                        machine.threads);
-    computing += machine.threads;
-    threads += machine.threads + 1;
-  }
-  return text + fmt::format("  {} threads run on the machines, {} of them compute\n", threads, computing);
+  return text;
 }
 
 void write_placement(const io::RunDirectory& directory, const io::Summary& summary, const io::UnitNames& units) {

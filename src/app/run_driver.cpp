@@ -126,8 +126,13 @@ ExitCode report(const Drive& run, const cluster::Simulation& simulation, const K
   }
   if (run.settings.json) {
     print_json(io::to_json(summary));
-  } else if (!run.settings.quiet) {
-    print_out(summary_text(summary, loaded.deck.units, simulation.start(), end.last.diagnostics));
+  } else if (run.link != nullptr || !run.settings.quiet) {
+    const std::string text = summary_text(summary, loaded.deck.units, simulation.start(), end.last.diagnostics);
+    if (run.link != nullptr) {
+      run.link->send({{"event", "summary"}, {"text", text}});
+    } else {
+      print_out(text);
+    }
   }
   return report_end(end, frames, run.directory);
 }

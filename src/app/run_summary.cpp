@@ -115,8 +115,8 @@ std::string summary_text(const io::Summary& s, const io::UnitNames& units, const
                       p.y, p.z, units.of("force*time"), l.x, l.y, l.z, units.of("force*length*time"));
   text += fmt::format("  contact    at most {} pairs, deepest {:.1f} % of the contact distance, {} searches\n",
                       s.contacts_most, 100.0 * s.deepest_penetration, s.searches);
-  text += fmt::format("  wall time  {} with {} threads ({} kernel), {}\n", wall_time_text(s.wall_seconds), s.threads,
-                      s.kernel, rate_text(s.element_steps_per_second));
+  text += fmt::format("  wall time  {} with {} {} ({} kernel), {}\n", wall_time_text(s.wall_seconds), s.threads,
+                      s.threads == 1 ? "thread" : "threads", s.kernel, rate_text(s.element_steps_per_second));
   text += fmt::format("  state      {} after step {}\n", s.state_hash, s.steps);
   if (s.placement.machines.size() > 1) {
     text += placement_text(s.placement, units);

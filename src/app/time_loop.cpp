@@ -196,6 +196,8 @@ void Loop::tell_status() {
     if (machine.present()) {
       machines.push_back({{"name", machine.name},
                           {"threads", machine.threads},
+                          {"native_threads", machine.native_threads},
+                          {"running_threads", load.running_threads[m]},
                           {"bodies", bodies[m]},
                           {"elements", elements[m]},
                           {"load", load.seconds > 0.0 ? load.busy_seconds[m] / load.seconds : 0.0}});

@@ -43,6 +43,10 @@ void PlacementLedger::note(const model::Model& model, std::int64_t step, double 
     frames_.pop_back();
   }
   frames_.push_back(std::move(frame));
+  if (frames_.size() > 2 * frames_kept) {
+    frames_.erase(frames_.begin() + frames_kept);
+    ++frames_left_out_;
+  }
 }
 
 void PlacementLedger::pack(ByteWriter& out) const {
@@ -56,6 +60,7 @@ void PlacementLedger::pack(ByteWriter& out) const {
     out.value(frame.moved_elements);
     out.value(frame.moved_nodes);
   }
+  out.value(frames_left_out_);
   out.value(moved_elements_);
   out.value(moved_nodes_);
   out.value(moved_bytes_);
@@ -74,6 +79,7 @@ PlacementLedger PlacementLedger::unpack(ByteReader& in) {
     frame.moved_elements = in.value<std::int64_t>();
     frame.moved_nodes = in.value<std::int64_t>();
   }
+  ledger.frames_left_out_ = in.value<std::int64_t>();
   ledger.moved_elements_ = in.value<std::int64_t>();
   ledger.moved_nodes_ = in.value<std::int64_t>();
   ledger.moved_bytes_ = in.value<std::int64_t>();

@@ -30,6 +30,9 @@ struct LedgerMove {
   Move move;
 };
 
+/// So many frames are kept at either end of a run: snapshots hold them, and it may change its islands in every epoch.
+constexpr std::size_t frames_kept = 500;
+
 /// All changes of placement of a run. Bodies count as moved when their machine changes after the start.
 class PlacementLedger {
  public:
@@ -38,7 +41,10 @@ class PlacementLedger {
             const std::vector<Machine>& machines, std::string reason);
   void add_bytes(std::int64_t bytes) noexcept { moved_bytes_ += bytes; }
 
+  /// Of a run with very many of them the first and the last.
   [[nodiscard]] const std::vector<PlacementFrame>& frames() const noexcept { return frames_; }
+  /// How many came between them.
+  [[nodiscard]] std::int64_t frames_left_out() const noexcept { return frames_left_out_; }
   /// Moves since the last call.
   [[nodiscard]] std::vector<LedgerMove> take_moves() { return std::exchange(moves_, {}); }
   [[nodiscard]] std::int64_t moved_elements() const noexcept { return moved_elements_; }
@@ -50,6 +56,7 @@ class PlacementLedger {
 
  private:
   std::vector<PlacementFrame> frames_;
+  std::int64_t frames_left_out_{};
   std::vector<LedgerMove> moves_;
   std::int64_t moved_elements_{};
   std::int64_t moved_nodes_{};

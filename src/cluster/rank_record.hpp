@@ -29,6 +29,7 @@ struct RankRecord {
   std::int64_t message_bytes{};
   double busy_seconds{};     ///< Spent stepping
   double waiting_seconds{};  ///< Spent in the communicator since the record before; of several ranks the sum
+  int running_threads{};     ///< Of the process, computing or not; 0: not counted this time
 
   void add(const solve::IslandReport& island);
   void add(const RankRecord& other);

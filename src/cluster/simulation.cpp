@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 
 #include "base/hash.hpp"
+#include "base/process_threads.hpp"
 #include "base/stopwatch.hpp"
 #include "parallel/parallel.hpp"
 
@@ -168,6 +171,8 @@ RankRecord Simulation::advance_islands(const Attempt& attempt, std::int64_t hash
   RankRecord own;
   own.busy_seconds = seconds_since(start);
   own.requests = requests;
+  // A folder of /proc is read, so it is done ever more seldom.
+  own.running_threads = std::has_single_bit(static_cast<std::uint64_t>(load_.epochs + 1)) ? process_threads() : 0;
   for (const solve::IslandReport& island : islands) {
     own.add(island);
   }

@@ -36,6 +36,7 @@ struct World {
 /// How the work went since this world began.
 struct WorldLoad {
   std::vector<double> busy_seconds;  ///< Spent stepping, shape [machines]
+  std::vector<int> running_threads;  ///< Of the processes, computing or not, shape [machines]
   double waiting_seconds{};          ///< Spent in the communicator, mean of the ranks
   double seconds{};                  ///< In all
   std::int64_t epochs{};

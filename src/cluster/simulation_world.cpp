@@ -217,10 +217,12 @@ RankRecord Simulation::share(const RankRecord& own, std::span<const double> isla
   }
   for (std::size_t m = 0; m < world_.machines.size(); ++m) {
     if (const Machine& machine = world_.machines[m]; machine.present()) {
-      const double seconds = records[static_cast<std::size_t>(machine.rank)].busy_seconds;
+      const RankRecord& told = records[static_cast<std::size_t>(machine.rank)];
+      const double seconds = told.busy_seconds;
       scale_cost(held[static_cast<std::size_t>(machine.rank)], seconds * machine.speed);
       if (m < load_.busy_seconds.size()) {
         load_.busy_seconds[m] += seconds;
+        load_.running_threads[m] = told.running_threads > 0 ? told.running_threads : load_.running_threads[m];
       }
     }
   }
@@ -297,6 +299,7 @@ void Simulation::collect() {
 void Simulation::begin_load() {
   load_ = {};
   load_.busy_seconds.assign(world_.machines.size(), 0.0);
+  load_.running_threads.assign(world_.machines.size(), 0);
   began_ = Clock::now();
   told_ = world_.communicator->traffic();
 }

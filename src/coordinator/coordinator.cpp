@@ -244,7 +244,7 @@ void Coordinator::launch(const LaunchWorld& world) {
   world_client_.reset();
   worker_status_ = nlohmann::json::object();
   end_reason_.clear();
-  WorldRecord record{world.world, {}, date_and_time(), ""};
+  WorldRecord record{world.world, {}, date_and_time(), "", {}};
   for (const Machine& machine : world.ranks) {
     used_[machine.name] = machine;
     record.machines.push_back(to_text(machine));

@@ -41,6 +41,8 @@ class Coordinator {
 
   /// To the end of the run.
   [[nodiscard]] FinishRun run();
+  /// What the last world had to say of the run, for the user; empty when it did not come to that.
+  [[nodiscard]] const std::string& summary() const noexcept { return summary_; }
 
  private:
   // Events
@@ -48,6 +50,7 @@ class Coordinator {
   void receive(double now);
   void receive_message(double now, const ControlServer::Message& message);
   void greet(double now, int client, const nlohmann::json& hello);
+  void note_threads(const nlohmann::json& status);
   void receive_from_world(double now, const nlohmann::json& message);
   [[nodiscard]] nlohmann::json answer_command(double now, const nlohmann::json& message);
   [[nodiscard]] nlohmann::json answer_add(double now, const std::string& text);
@@ -81,6 +84,7 @@ class Coordinator {
   std::optional<int> world_client_;
   nlohmann::json worker_status_ = nlohmann::json::object();
   std::string end_reason_;  ///< Of the present world, once it has told
+  std::string summary_;
   std::vector<LookAnswer> look_answers_;
   std::optional<KillWorld> killing_;
   double killed_at_{};

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
+#include "base/process_threads.hpp"
 #include "coordinator/coordinator.hpp"
 #include "coordinator/places.hpp"
 
@@ -91,12 +92,32 @@ void Coordinator::receive_from_world(double now, const nlohmann::json& message) 
   } else if (event == "status") {
     membership_.advanced(now, step);
     worker_status_ = message;
+    note_threads(message);
     settings_.progress(message);
+  } else if (event == "summary") {
+    summary_ = text_of(message, "text");
   } else if (event == "ended") {
     end_reason_ = text_of(message, "reason");
     membership_.ended(now, {text_of(message, "reason"), static_cast<int>(number_of(message, "exit_code", 0)),
                             text_of(message, "message"), step});
   }
+}
+
+/// Once for each world.
+void Coordinator::note_threads(const nlohmann::json& status) {
+  WorldThreads& threads = settings_.record.worlds.back().threads;
+  if (!threads.machines.empty() || !status.contains("machines") || !launcher_) {
+    return;
+  }
+  for (const nlohmann::json& machine : status["machines"]) {
+    threads.machines.push_back({text_of(machine, "name"), static_cast<int>(number_of(machine, "native_threads", 0)),
+                                static_cast<int>(number_of(machine, "running_threads", 0)),
+                                static_cast<int>(number_of(machine, "threads", 0))});
+  }
+  threads.coordinator = process_threads();
+  threads.mpirun = process_threads(launcher_->id());
+  threads.launch_agents = static_cast<int>(
+      std::ranges::count_if(launched_->ranks, [](const Machine& machine) { return !is_own_address(machine.address); }));
 }
 
 void Coordinator::tell_world(const char* command) {

@@ -65,6 +65,29 @@ ClusterOptions options_of(const Json& json) {
   return options;
 }
 
+Json threads_json(const WorldThreads& threads) {
+  Json machines = Json::array();
+  for (const MachineThreads& one : threads.machines) {
+    machines.push_back(
+        {{"name", one.machine}, {"native", one.native}, {"running", one.running}, {"computing", one.computing}});
+  }
+  return {{"machines", std::move(machines)},
+          {"coordinator", threads.coordinator},
+          {"mpirun", threads.mpirun},
+          {"launch_agents", threads.launch_agents}};
+}
+
+WorldThreads threads_of(const Json& json) {
+  WorldThreads threads;
+  for (const Json& one : json.at("machines")) {
+    threads.machines.push_back({one.at("name"), one.at("native"), one.at("running"), one.at("computing")});
+  }
+  threads.coordinator = json.at("coordinator");
+  threads.mpirun = json.at("mpirun");
+  threads.launch_agents = json.at("launch_agents");
+  return threads;
+}
+
 ClusterRecord record_of(const Json& json) {
   ClusterRecord record;
   record.run_id = json.at("run_id");
@@ -75,7 +98,8 @@ ClusterRecord record_of(const Json& json) {
     record.events.push_back({event.at("step"), event.at("add"), machine_of(event.at("machine")), event.at("applied")});
   }
   for (const Json& world : json.at("worlds")) {
-    record.worlds.push_back({world.at("world"), world.at("machines"), world.at("started"), world.at("ended")});
+    record.worlds.push_back({world.at("world"), world.at("machines"), world.at("started"), world.at("ended"),
+                             threads_of(world.at("threads"))});
   }
   record.state = json.at("state");
   record.message = json.at("message");
@@ -98,8 +122,11 @@ nlohmann::ordered_json to_json(const ClusterRecord& record) {
                       {"applied", event.applied}});
   }
   for (const WorldRecord& world : record.worlds) {
-    worlds.push_back(
-        {{"world", world.world}, {"machines", world.machines}, {"started", world.started}, {"ended", world.ended}});
+    worlds.push_back({{"world", world.world},
+                      {"machines", world.machines},
+                      {"started", world.started},
+                      {"ended", world.ended},
+                      {"threads", threads_json(world.threads)}});
   }
   return {{"format", format_version},
           {"run_id", record.run_id},

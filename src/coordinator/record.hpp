@@ -25,12 +25,29 @@ struct ClusterOptions {
   bool quiet{};
 };
 
+/// The threads of a machine's process.
+struct MachineThreads {
+  std::string machine;
+  int native{};     ///< Of the hardware
+  int running{};    ///< As the system counts them
+  int computing{};  ///< Of these
+};
+
+/// The threads of a world as they were when it had stepped its first epoch: the paper's table 2.
+struct WorldThreads {
+  std::vector<MachineThreads> machines;
+  int coordinator{};
+  int mpirun{};         ///< On the coordinator's machine
+  int launch_agents{};  ///< One for each other machine
+};
+
 /// A world that was started.
 struct WorldRecord {
   int world{};
   std::vector<std::string> machines;  ///< By rank
   std::string started;                ///< Date and time
   std::string ended;                  ///< Reason, or what it was lost for; empty while it lives
+  WorldThreads threads;               ///< Without machines: it never stepped
 };
 
 /// cluster.json of a run: all that a new coordinator needs to go on.

@@ -59,6 +59,7 @@ ordered_json placement_part(const Summary::Placement& p) {
     machines.push_back({{"name", machine.name},
                         {"threads", machine.threads},
                         {"native_threads", machine.native_threads},
+                        {"running_threads", machine.running_threads},
                         {"busy_seconds", machine.busy_seconds}});
   }
   for (const auto& frame : p.frames) {
@@ -72,6 +73,7 @@ ordered_json placement_part(const Summary::Placement& p) {
   }
   return {{"machines", machines},
           {"frames", frames},
+          {"frames_left_out", p.frames_left_out},
           {"moved_elements", p.moved_elements},
           {"moved_nodes", p.moved_nodes},
           {"moved_ratio", p.moved_ratio},

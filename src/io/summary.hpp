@@ -66,6 +66,7 @@ struct Summary {
       std::string name;
       int threads{};  ///< That compute
       int native_threads{};
+      int running_threads{};  ///< Of the process, computing or not
       double busy_seconds{};  ///< Spent stepping in the last world
     };
     struct FrameLine {
@@ -78,7 +79,8 @@ struct Summary {
       std::int64_t moved_nodes{};
     };
     std::vector<MachineLine> machines;
-    std::vector<FrameLine> frames;
+    std::vector<FrameLine> frames;  ///< The first and the last of very many
+    std::int64_t frames_left_out{};
     std::int64_t moved_elements{};
     std::int64_t moved_nodes{};
     double moved_ratio{};  ///< Moved elements over those of the model [-]

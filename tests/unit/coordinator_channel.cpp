@@ -118,7 +118,7 @@ TEST(cluster_record, is_read_back_as_it_was_written) {
   record.machines = {{"c1", "localhost", 2}};
   record.listed = {{"c1", "localhost", 2}, {"c2", "far", 0}};
   record.events = {{50, true, {"c3", "far3", 0}, true}};
-  record.worlds = {{4, {"c1=localhost:2"}, "today", "reform"}};
+  record.worlds = {{4, {"c1=localhost:2"}, "today", "reform", {{{"c1", 8, 5, 2}}, 3, 1, 0}}};
   record.state = "stopped";
   record.pid = 42;
   write_record(folder.path(), record);

@@ -54,6 +54,18 @@ TEST_F(Ledger, gives_each_move_once) {
   EXPECT_TRUE(ledger.take_moves().empty());
 }
 
+TEST_F(Ledger, of_very_many_changes_keeps_the_first_and_the_last) {
+  const auto changes = static_cast<std::int64_t>(2 * frames_kept) + 7;
+  for (std::int64_t step = 0; step < changes; ++step) {
+    note(step, {{static_cast<MachineIndex>(step % 2), 1, 1}, {}}, "again");
+  }
+  ASSERT_EQ(ledger.frames().size(), 2 * frames_kept);
+  EXPECT_EQ(ledger.frames_left_out(), 7);
+  EXPECT_EQ(ledger.frames()[frames_kept - 1].step, static_cast<std::int64_t>(frames_kept) - 1);
+  EXPECT_EQ(ledger.frames()[frames_kept].step, static_cast<std::int64_t>(frames_kept) + 7);
+  EXPECT_EQ(ledger.frames().back().step, changes - 1);
+}
+
 TEST_F(Ledger, comes_back_from_its_bytes_and_what_is_cut_off_is_told) {
   note(0, {{0, 1, 1}, {}}, "start");
   note(2, {{1, 1, 1}, {{0, 0, 1, MoveReason::balance}}}, "a reason");

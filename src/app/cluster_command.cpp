@@ -162,6 +162,7 @@ Action declare_run(CLI::App& app) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62))
       ->option_text("N");
   add_checkpoint_option(app, options->checkpoint_seconds);
+  add_placement_option(app, options->placement);
   app.add_option("--at", options->events, "Change the machines at a step; may be given several times")
       ->option_text("\"STEP add|remove HOST\"")
       ->expected(1)

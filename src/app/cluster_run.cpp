@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -16,6 +17,7 @@
 #include <sstream>
 
 #include "app/load.hpp"
+#include "app/options.hpp"
 #include "app/print.hpp"
 #include "app/signals.hpp"
 #include "app/thread_table.hpp"
@@ -136,6 +138,11 @@ std::vector<std::string> worker_program() {
   return other != nullptr && *other != '\0' ? coordinator::split_words(other) : own_program();
 }
 
+std::string name_of(cluster::PlacementRule rule) {
+  const auto& rules = placement_rules();
+  return std::ranges::find(rules, rule, &std::pair<const std::string, cluster::PlacementRule>::second)->first;
+}
+
 std::string absolute(const std::string& path) { return path.empty() ? "" : fs::absolute(path).string(); }
 
 ExitCode report(const coordinator::FinishRun& end, const io::RunDirectory& directory, bool json) {
@@ -241,6 +248,7 @@ ExitCode cluster_run(const ClusterRunOptions& options) {
                     options.threads,
                     options.hash_every,
                     options.checkpoint_seconds,
+                    name_of(options.placement),
                     options.quiet};
   return coordinate(directory, record, options.quiet, options.json);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/exit_code.hpp"
+#include "cluster/placement.hpp"
 
 namespace fexp::app {
 
@@ -20,6 +21,7 @@ struct ClusterRunOptions {
   std::string mpirun;
   std::int64_t hash_every{};
   double checkpoint_seconds{60.0};
+  cluster::PlacementRule placement{cluster::PlacementRule::fewest_elements};
   bool quiet{};
   bool json{};
   std::vector<std::string> events;

@@ -30,17 +30,24 @@ void add_checkpoint_option(CLI::App& options, double& seconds) {
       ->option_text("SECONDS");
 }
 
-void add_drive_options(CLI::App& options, DriveSettings& settings) {
-  using cluster::PlacementRule;
-  add_checkpoint_option(options, settings.checkpoint_seconds);
-  const std::map<std::string, PlacementRule> rules{{"elements", PlacementRule::fewest_elements},
-                                                   {"cost", PlacementRule::measured_cost}};
+const std::map<std::string, cluster::PlacementRule>& placement_rules() {
+  static const std::map<std::string, cluster::PlacementRule> rules{
+      {"elements", cluster::PlacementRule::fewest_elements}, {"cost", cluster::PlacementRule::measured_cost}};
+  return rules;
+}
+
+void add_placement_option(CLI::App& options, cluster::PlacementRule& rule) {
   options
-      .add_option("--placement", settings.world.rule,
+      .add_option("--placement", rule,
                   "Where islands go on several machines: elements (to the machine with the fewest, when islands merge "
                   "or split), or cost (by measured cost and speed); the results are the same")
-      ->transform(CLI::CheckedTransformer(rules))
+      ->transform(CLI::CheckedTransformer(placement_rules()))
       ->option_text("RULE");
+}
+
+void add_drive_options(CLI::App& options, DriveSettings& settings) {
+  add_checkpoint_option(options, settings.checkpoint_seconds);
+  add_placement_option(options, settings.world.rule);
   options
       .add_option("--latency", settings.world.latency_seconds,
                   "Time added to every message between machines, to see what a slow network does")

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <string>
 
 #include "app/run_driver.hpp"
@@ -17,6 +18,10 @@ void add_json_option(CLI::App& options, bool& json, const char* meaning);
 
 /// Wall time between checkpoints on the disk [s].
 void add_checkpoint_option(CLI::App& options, double& seconds);
+/// Where islands go on several machines.
+void add_placement_option(CLI::App& options, cluster::PlacementRule& rule);
+/// The rules by the names that the option knows them by.
+[[nodiscard]] const std::map<std::string, cluster::PlacementRule>& placement_rules();
 /// How often to save, and where islands go on several machines.
 void add_drive_options(CLI::App& options, DriveSettings& settings);
 

@@ -149,6 +149,8 @@ ExitCode work_here(const WorkerOptions& options, Ranks& ranks) {
   run.settings.world.writer_only = options.writer_only;
   run.settings.hash_every = greeting.at("options").value("hash_every", std::int64_t{0});
   run.settings.checkpoint_seconds = greeting.at("options").value("checkpoint_seconds", run.settings.checkpoint_seconds);
+  const auto rule = placement_rules().find(greeting.at("options").value("placement", ""));
+  run.settings.world.rule = rule != placement_rules().end() ? rule->second : run.settings.world.rule;
   run.settings.quiet = true;
   RunEnd end;
   const ExitCode code = drive(run, end);

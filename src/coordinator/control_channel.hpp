@@ -11,8 +11,8 @@ namespace fexp::coordinator {
 
 /// The end of rank 0 of a world. It is greeted with
 ///   {"run": directory, "deck": path, "deck_copy": path, "run_id": ..., "world": n, "machines": [names by rank],
-///    "writer_only": bool, "events": [steps], "options": {"hash_every": n, "checkpoint_seconds": t, "threads": n,
-/// "quiet": bool}},
+///    "writer_only": bool, "events": [steps], "options": {"hash_every": n, "checkpoint_seconds": t,
+///    "placement": rule, "threads": n, "quiet": bool}},
 /// or with {"error": text} when the coordinator does not know this world: the worker ends then.
 ///
 /// It sends

@@ -73,6 +73,7 @@ void Coordinator::greet(double now, int client, const nlohmann::json& hello) {
                         {"options",
                          {{"hash_every", options.hash_every},
                           {"checkpoint_seconds", options.checkpoint_seconds},
+                          {"placement", options.placement},
                           {"threads", options.threads},
                           {"quiet", options.quiet}}}});
   membership_.connected(now);

@@ -45,10 +45,16 @@ std::vector<Machine> machines_of(const Json& json) {
 }
 
 Json options_json(const ClusterOptions& options) {
-  return {
-      {"deck", options.deck},   {"hosts", options.hosts},           {"discover", options.script},
-      {"agent", options.agent}, {"mpirun", options.mpirun},         {"threads", options.threads},
-      {"quiet", options.quiet}, {"hash_every", options.hash_every}, {"checkpoint_seconds", options.checkpoint_seconds}};
+  return {{"deck", options.deck},
+          {"hosts", options.hosts},
+          {"discover", options.script},
+          {"agent", options.agent},
+          {"mpirun", options.mpirun},
+          {"threads", options.threads},
+          {"quiet", options.quiet},
+          {"hash_every", options.hash_every},
+          {"checkpoint_seconds", options.checkpoint_seconds},
+          {"placement", options.placement}};
 }
 
 ClusterOptions options_of(const Json& json) {
@@ -62,6 +68,7 @@ ClusterOptions options_of(const Json& json) {
   options.quiet = json.at("quiet");
   options.hash_every = json.at("hash_every");
   options.checkpoint_seconds = json.at("checkpoint_seconds");
+  options.placement = json.at("placement");
   return options;
 }
 

@@ -22,6 +22,7 @@ struct ClusterOptions {
   int threads{};
   std::int64_t hash_every{};
   double checkpoint_seconds{60.0};  ///< At least so long between two checkpoints on the disk
+  std::string placement;            ///< Rule of placement, as the worker knows it
   bool quiet{};
 };
 

@@ -55,6 +55,14 @@ class Tables(real.Case):
     def test_and_so_it_is_with_two_threads_on_every_machine(self):
         self.check_tables(2)
 
+    def test_by_measured_cost_the_machine_that_joins_gets_work_at_once(self):
+        """And the rule, as all options, is kept for whoever resumes the run. The bits are those of the paper's rule."""
+        process = self.start_real("c1", "c2", "c3", words=("--placement", "cost", "--at", "20 add c4=localhost"))
+        frames = self.finish(process)["placement"]["frames"]
+        self.assertTrue(any(len(frame["elements"]) == 4 and frame["elements"][3] > 0 and frame["time"] < 0.0014
+                            for frame in frames), frames)
+        self.assertEqual(self.record()["options"]["placement"], "cost")
+
     def test_the_tables_are_printed_at_the_end(self):
         self.local_hosts("c1", "c2", "c3")
         process = self.start_run("--threads", "1", *self.run_words, "--at", "90 add c4=localhost")

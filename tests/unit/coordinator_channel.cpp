@@ -114,7 +114,7 @@ TEST(cluster_record, is_read_back_as_it_was_written) {
   const test::TemporaryDirectory folder;
   ClusterRecord record;
   record.run_id = "0123456789abcdef";
-  record.options = {"/d/deck.toml", "/d/hosts", "", "agent -v", "--mca a b", 3, 7, true};
+  record.options = {"/d/deck.toml", "/d/hosts", "", "agent -v", "--mca a b", 3, 7, 60.0, "cost", true};
   record.machines = {{"c1", "localhost", 2}};
   record.listed = {{"c1", "localhost", 2}, {"c2", "far", 0}};
   record.events = {{50, true, {"c3", "far3", 0}, true}};

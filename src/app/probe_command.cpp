@@ -8,7 +8,7 @@
 #include "base/errors.hpp"
 #include "coordinator/places.hpp"
 #include "coordinator/probe.hpp"
-#include "solve/element_kernels.hpp"
+#include "solve/kernels.hpp"
 
 namespace fexp::app {
 

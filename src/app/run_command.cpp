@@ -44,7 +44,7 @@ ExitCode run_here(const RunOptions& options, Ranks& ranks) {
 }
 
 ExitCode run(const RunOptions& options) {
-  if (solve::select_element_kernel(options.drive.kernel).function == nullptr) {
+  if (solve::select_element_kernel(options.drive.kernel).elements == nullptr) {
     print_error("fexp: --kernel: this processor cannot run the kernel asked for; cure: leave --kernel out\n");
     return ExitCode::wrong_input;
   }

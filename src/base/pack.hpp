@@ -58,7 +58,18 @@ struct BasicPack {
   BasicPack() = default;
   explicit BasicPack(Native native) noexcept : v(native) {}
   // Implicit on purpose: a literal in a formula reads the same for double and for packs.
-  BasicPack(double s) noexcept : v(Native{} + s) {}  // NOLINT(google-explicit-constructor)
+  BasicPack(double s) noexcept : v(broadcast(s)) {}  // NOLINT(google-explicit-constructor)
+
+  /// Without arithmetic: a sum with zeros would have to be taken in every lane.
+  [[nodiscard]] static Native broadcast(double s) noexcept {
+    if constexpr (W == 2) {
+      return Native{s, s};
+    } else if constexpr (W == 4) {
+      return Native{s, s, s, s};
+    } else {
+      return Native{s, s, s, s, s, s, s, s};
+    }
+  }
 
   [[nodiscard]] static BasicPack load(const double* p) noexcept {
     BasicPack r;

@@ -190,7 +190,7 @@ void Simulation::put_back() {
   notices_ = start_notices_;
   parallel::for_each(static_cast<Index>(solvers_.size()), 1, [&](Index i) {
     if (solvers_[at(i)]) {
-      solvers_[at(i)]->assign(model_, state_, islands_[at(i)].bodies, islands_[at(i)].barriers);
+      solvers_[at(i)]->assign(model_, workspace_.patches, state_, islands_[at(i)].bodies, islands_[at(i)].barriers);
       solvers_[at(i)]->evaluate(model_, state_, workspace_);
     }
   });

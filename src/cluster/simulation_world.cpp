@@ -153,7 +153,7 @@ void Simulation::take_up_solvers(std::vector<Island> islands) {
   parallel::for_each(static_cast<Index>(fresh.size()), 1, [&](Index k) {
     const std::size_t i = at(fresh[at(k)]);
     solvers_[i] = std::make_unique<solve::IslandSolver>();
-    solvers_[i]->assign(model_, state_, islands_[i].bodies, islands_[i].barriers);
+    solvers_[i]->assign(model_, workspace_.patches, state_, islands_[i].bodies, islands_[i].barriers);
     if (std::ranges::any_of(islands_[i].bodies, [&](Index body) { return arrived_[at(body)]; })) {
       solvers_[i]->evaluate(model_, state_, workspace_);
     }

@@ -48,7 +48,7 @@ void build_masses(Model& model) {
     const auto frame = physics::triangle_frame(model.reference_position[at(t[1])] - origin,
                                                model.reference_position[at(t[2])] - origin);
     const SectionData& section = model.section_of(e);
-    const double area = 0.5 * frame.doubled_area();
+    const double area = 0.5 * frame.doubled_area;
     model.reference_area[at(e)] = area;
     element_mass[at(e)] = physics::corner_mass(section.density, section.thickness, area);
     element_inertia[at(e)] = physics::corner_inertia(element_mass[at(e)], section.thickness, area);

@@ -10,6 +10,7 @@
 
 #include "base/trigonometry.hpp"
 #include "model/build_checks.hpp"
+#include "model/mesh_order.hpp"
 #include "model/topology.hpp"
 
 namespace fexp::model {
@@ -123,6 +124,13 @@ PlacedMesh place_mesh(const BodyDescription& body, const Mesh& mesh, const std::
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](Index a, Index b) { return sections[at(mesh.part[at(a)])] < sections[at(mesh.part[at(b)])]; });
+  for (auto begin = order.begin(); begin != order.end();) {
+    const Index section = sections[at(mesh.part[at(*begin)])];
+    const auto end =
+        std::find_if(begin, order.end(), [&](Index t) { return sections[at(mesh.part[at(t)])] != section; });
+    order_by_place(placed.position, oriented, {begin, end});
+    begin = end;
+  }
   for (const Index t : order) {
     Triangle nodes = oriented[at(t)];
     if (body.flip_normals) {

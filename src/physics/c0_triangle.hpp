@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "base/inline.hpp"
 #include "base/pack.hpp"
 #include "base/vec3.hpp"
 #include "physics/plane_stress_material.hpp"
@@ -25,29 +26,52 @@ struct ShellSection {
   static constexpr double shear_factor = 5.0 / 6.0;
 };
 
+/// What the kernels need of a section, made ready once for many elements.
+struct ShellStiffness {
+  PlaneStressModuli membrane;  ///< t C [force/length]
+  PlaneStressModuli bending;   ///< t^3/12 C [force*length]
+  double shear;                ///< 5/6 t G [force/length]
+  double drilling;             ///< beta G t / 3 [force/length]
+  double thickness2;           ///< t^2 [length^2]
+
+  FEXP_INLINE ShellStiffness(const ShellSection& s) noexcept  // NOLINT(google-explicit-constructor)
+      : membrane(times(s.thickness, s.moduli)),
+        bending(times(s.thickness * s.thickness * s.thickness / 12.0, s.moduli)),
+        shear(ShellSection::shear_factor * s.thickness * s.moduli.shear),
+        drilling(s.drilling * s.moduli.shear * s.thickness / 3.0),
+        thickness2(s.thickness * s.thickness) {}
+
+ private:
+  FEXP_INLINE static PlaneStressModuli times(double factor, const PlaneStressModuli& m) noexcept {
+    return {factor * m.direct, factor * m.cross, factor * m.shear};
+  }
+};
+
 /// Local frame and coordinates of a triangle: nodes (0,0), (x2,0), (x3,y3) in the plane of e1, e2.
 template <class T>
 struct TriangleFrame {
   Vec3<T> e1, e2, e3;
   T x2, x3, y3;                          // [length]
+  T doubled_area;                        // [length^2]
   T inverse_side, inverse_doubled_area;  // 1/x2, 1/(x2 y3)
-
-  [[nodiscard]] T doubled_area() const noexcept { return x2 * y3; }
 };
 
 /// Frame with e1 along side 1-2 and e3 along the normal. `a` = X2 - X1 and `b` = X3 - X1 [length].
 template <class T>
-[[nodiscard]] inline TriangleFrame<T> triangle_frame(const Vec3<T>& a, const Vec3<T>& b) noexcept {
+[[nodiscard]] FEXP_INLINE TriangleFrame<T> triangle_frame(const Vec3<T>& a, const Vec3<T>& b) noexcept {
   const Vec3<T> n = cross(a, b);
   TriangleFrame<T> frame;
-  frame.inverse_side = T(1.0) / square_root(dot(a, a));
-  frame.inverse_doubled_area = T(1.0) / square_root(dot(n, n));
+  frame.x2 = square_root(dot(a, a));
+  frame.doubled_area = square_root(dot(n, n));
+  // One division for both inverses: it takes as long as a dozen products.
+  const T inverse = T(1.0) / (frame.x2 * frame.doubled_area);
+  frame.inverse_side = inverse * frame.doubled_area;
+  frame.inverse_doubled_area = inverse * frame.x2;
   frame.e1 = frame.inverse_side * a;
   frame.e3 = frame.inverse_doubled_area * n;
   frame.e2 = cross(frame.e3, frame.e1);
-  frame.x2 = dot(a, frame.e1);
   frame.x3 = dot(b, frame.e1);
-  frame.y3 = dot(b, frame.e2);
+  frame.y3 = frame.doubled_area * frame.inverse_side;
   return frame;
 }
 
@@ -56,26 +80,39 @@ template <class T>
 struct ShapeDerivatives {
   T b2, c2, c3;  // [1/length]
 
-  explicit ShapeDerivatives(const TriangleFrame<T>& f) noexcept
+  FEXP_INLINE explicit ShapeDerivatives(const TriangleFrame<T>& f) noexcept
       : b2(f.inverse_side), c2(-(f.x3 * f.inverse_doubled_area)), c3(f.x2 * f.inverse_doubled_area) {}
 };
 
-/// Rows of 12 A Bs, the assumed transverse shear of [BSC84] as it acts on (thx1, thy1, thx2, thy2, thx3, thy3); the
-/// zero in the first row is left out of the sums.
+/// Six times Bs, the assumed transverse shear of [BSC84] as it acts on (thx1, thy1, thx2, thy2, thx3, thy3), by ratios
+/// of the local coordinates. Rotations enter through differences where that saves products.
 template <class T>
-struct ShearRows {
-  std::array<T, 6> xz, yz;  // [length^2]
+struct AssumedShear {
+  T p, r, s, u, z;  // x3/x2, x2/y3, 2 x3/y3, y3/x2, -x3^2/(x2 y3) [-]
 
-  explicit ShearRows(const TriangleFrame<T>& f) noexcept {
-    const T y33 = f.y3 * f.y3;
-    const T x2y3 = f.x2 * f.y3;
-    xz = {-y33, f.y3 * (f.x2 + f.x2 + f.x3), y33, f.y3 * (T(3.0) * f.x2 - f.x3), T(0.0), x2y3};
-    yz = {f.y3 * (f.x3 - f.x2 - f.x2),
-          f.x2 * f.x2 - f.x3 * f.x3,
-          -(f.y3 * (f.x2 + f.x3)),
-          f.x3 * (f.x3 - f.x2 - f.x2),
-          T(-3.0) * x2y3,
-          f.x2 * (f.x3 + f.x3 - f.x2)};
+  FEXP_INLINE AssumedShear(const TriangleFrame<T>& f, const ShapeDerivatives<T>& d) noexcept
+      : p(f.x3 * d.b2), r(f.x2 * d.c3), s(f.x3 * (d.c3 + d.c3)), u(f.y3 * d.b2), z(f.x3 * d.c2) {}
+
+  [[nodiscard]] std::array<T, 6> row_xz() const noexcept { return {-u, T(2.0) + p, u, T(3.0) - p, T(0.0), T(1.0)}; }
+  [[nodiscard]] std::array<T, 6> row_yz() const noexcept {
+    return {p - T(2.0), r + z, -(T(1.0) + p), -(s + z), T(-3.0), s - r};
+  }
+
+  /// Six times the shear strains of corner rotations.
+  [[nodiscard]] FEXP_INLINE std::array<T, 2> strain(const std::array<T, 3>& tx,
+                                                    const std::array<T, 3>& ty) const noexcept {
+    const T tx2 = tx[1] - tx[0], ty2 = ty[1] - ty[0], ty3 = ty[2] - ty[0];
+    const T sum_x = tx[0] + tx[1] + tx[2], sum_y = ty[0] + ty[1] + ty[2];
+    return {(u * tx2 - p * ty2) + (sum_y + ty[0] + (ty[1] + ty[1])),
+            ((s - r) * ty3 - p * tx2 - (s + z) * ty2) - (sum_x + tx[0] + (tx[2] + tx[2]))};
+  }
+
+  /// The transpose: moments of the corners for shear resultants, which are to be given times A/6.
+  FEXP_INLINE void moments(const T& qx, const T& qy, std::array<T, 3>& mx, std::array<T, 3>& my) const noexcept {
+    const T pqx = p * qx, pqy = p * qy, uqx = u * qx, zqy = z * qy, sqy = s * qy;
+    const T sr = sqy - r * qy;
+    mx = {(pqy - uqx) - (qy + qy), (uqx - pqy) - qy, -(qy + qy + qy)};
+    my = {(pqx + qx + qx) + (zqy - sr + sqy), (qx + qx + qx - pqx) - (sqy + zqy), qx + sr};
   }
 };
 
@@ -100,7 +137,7 @@ struct ShellResultants {
 
 /// Components of a strain (engineering shear xy) in a frame turned forwards by a small angle.
 template <class T>
-inline void turn_strain(const T& angle, T& xx, T& yy, T& xy) noexcept {
+FEXP_INLINE void turn_strain(const T& angle, T& xx, T& yy, T& xy) noexcept {
   const T change = angle * xy;
   xy = xy - (angle + angle) * (xx - yy);
   xx = xx + change;
@@ -109,19 +146,21 @@ inline void turn_strain(const T& angle, T& xx, T& yy, T& xy) noexcept {
 
 /// Strain increments dt x rate for corner velocities v and rotation rates w, in the frame of the mid-step geometry.
 template <class T>
-[[nodiscard]] inline ShellIncrement<T> strain_increment(const TriangleFrame<T>& f, const std::array<Vec3<T>, 3>& v,
-                                                        const std::array<Vec3<T>, 3>& w, const T& dt) noexcept {
+[[nodiscard]] FEXP_INLINE ShellIncrement<T> strain_increment(const TriangleFrame<T>& f, const std::array<Vec3<T>, 3>& v,
+                                                             const std::array<Vec3<T>, 3>& w, const T& dt) noexcept {
   const ShapeDerivatives<T> d(f);
-  const ShearRows<T> shear(f);
+  const AssumedShear<T> shear(f, d);
+  // Projections of rates on these are increments.
+  const Vec3<T> e1 = dt * f.e1, e2 = dt * f.e2, e3 = dt * f.e3;
   const Vec3<T> v12 = v[1] - v[0];
   const Vec3<T> v13 = v[2] - v[0];
-  const T u2 = dt * dot(v12, f.e1), v2 = dt * dot(v12, f.e2), w2 = dt * dot(v12, f.e3);
-  const T u3 = dt * dot(v13, f.e1), v3 = dt * dot(v13, f.e2), w3 = dt * dot(v13, f.e3);
+  const T u2 = dot(v12, e1), v2 = dot(v12, e2), w2 = dot(v12, e3);
+  const T u3 = dot(v13, e1), v3 = dot(v13, e2), w3 = dot(v13, e3);
   std::array<T, 3> tx, ty, tz;
   for (std::size_t i = 0; i < 3; ++i) {
-    tx[i] = dt * dot(w[i], f.e1);
-    ty[i] = dt * dot(w[i], f.e2);
-    tz[i] = dt * dot(w[i], f.e3);
+    tx[i] = dot(w[i], e1);
+    ty[i] = dot(w[i], e2);
+    tz[i] = dot(w[i], e3);
   }
   const T tx2 = tx[1] - tx[0], tx3 = tx[2] - tx[0];
   const T ty2 = ty[1] - ty[0], ty3 = ty[2] - ty[0];
@@ -136,15 +175,11 @@ template <class T>
   e.kyy = -(d.c2 * tx2 + d.c3 * tx3);
   e.kxy = (d.c2 * ty2 + d.c3 * ty3) - d.b2 * tx2;
 
-  const T inverse_12a = T(1.0 / 6.0) * f.inverse_doubled_area;
-  const T row_xz =
-      shear.xz[0] * tx[0] + shear.xz[1] * ty[0] + shear.xz[2] * tx[1] + shear.xz[3] * ty[1] + shear.xz[5] * ty[2];
-  const T row_yz = shear.yz[0] * tx[0] + shear.yz[1] * ty[0] + shear.yz[2] * tx[1] + shear.yz[3] * ty[1] +
-                   shear.yz[4] * tx[2] + shear.yz[5] * ty[2];
+  const std::array<T, 2> assumed = shear.strain(tx, ty);
   const T w_x = d.b2 * w2;
   const T w_y = d.c2 * w2 + d.c3 * w3;
-  e.gxz = w_x + inverse_12a * row_xz;
-  e.gyz = w_y + inverse_12a * row_yz;
+  e.gxz = w_x + T(1.0 / 6.0) * assumed[0];
+  e.gyz = w_y + T(1.0 / 6.0) * assumed[1];
 
   // Corners move along chords, so that the mid-step triangle is smaller than those at either end by an eighth of the
   // square of the turn, and side 1-2 lies in it turned back by `chord` from their mean.
@@ -164,8 +199,8 @@ template <class T>
 
 /// Drilling stiffness k_d = beta G t (A/3) min(1, t^2/A) [force*length].
 template <class T>
-[[nodiscard]] inline T drilling_stiffness(const ShellSection& s, const T& area) noexcept {
-  return T(s.drilling * s.moduli.shear * s.thickness / 3.0) * minimum(area, T(s.thickness * s.thickness));
+[[nodiscard]] FEXP_INLINE T drilling_stiffness(const ShellStiffness& s, const T& area) noexcept {
+  return T(s.drilling) * minimum(area, T(s.thickness2));
 }
 
 /// The in-plane turn of one step that carries resultants from side 1-2, to which the frame is tied, to the material:
@@ -177,7 +212,7 @@ struct MaterialTurn {
   T phi, half;                   // phi = gxy/2 and phi/2 [-]
   T tensor_scale, vector_scale;  // 1/(1 + phi^2) and 1/(1 + phi^2/4)
 
-  explicit MaterialTurn(const T& gxy) noexcept
+  FEXP_INLINE explicit MaterialTurn(const T& gxy) noexcept
       : phi(T(0.5) * gxy), half(T(0.25) * gxy), tensor_scale(), vector_scale() {
     const T tensor = T(1.0) + phi * phi, vector = T(1.0) + half * half;
     const T inverse = T(1.0) / (tensor * vector);
@@ -186,7 +221,7 @@ struct MaterialTurn {
   }
 
   /// Turns the components of a mean plane tensor; returns twice the change of xx and of xy, which the new tensor gets.
-  [[nodiscard]] std::array<T, 2> turn_tensor(T& xx, T& yy, T& xy) const noexcept {
+  [[nodiscard]] FEXP_INLINE std::array<T, 2> turn_tensor(T& xx, T& yy, T& xy) const noexcept {
     const T difference = T(0.5) * (xx - yy);
     const T change = phi * (tensor_scale * (xy - phi * difference));
     const T shear = -(phi * (difference + change));
@@ -197,7 +232,7 @@ struct MaterialTurn {
   }
 
   /// The same for a vector: changes of x and of y.
-  [[nodiscard]] std::array<T, 2> turn_vector(T& x, T& y) const noexcept {
+  [[nodiscard]] FEXP_INLINE std::array<T, 2> turn_vector(T& x, T& y) const noexcept {
     const T change_x = half * (vector_scale * (y - half * x));
     const T change_y = -(half * (x + change_x));
     x = x + change_x;
@@ -209,17 +244,15 @@ struct MaterialTurn {
 /// Linear elastic update S += C de of resultants that turn with the material, and of the energy by the mean of old and
 /// new resultants over the area.
 template <class T>
-inline void update_elastic(const ShellSection& s, const T& area, const ShellIncrement<T>& e,
-                           ShellResultants<T>& r) noexcept {
-  const double t = s.thickness;
-  const double bend = t * t * t / 12.0;
-  const T cs(ShellSection::shear_factor * t * s.moduli.shear);
+FEXP_INLINE void update_elastic(const ShellStiffness& s, const T& area, const ShellIncrement<T>& e,
+                                ShellResultants<T>& r) noexcept {
+  const T cs(s.shear);
   const T kd = drilling_stiffness(s, area);
   const MaterialTurn<T> turn(e.gxy);
 
   T density(0.0);
-  const auto add_tensor = [&](double factor, const std::array<T, 3>& strain, T& xx, T& yy, T& xy) {
-    const T direct(factor * s.moduli.direct), cross(factor * s.moduli.cross), shear(factor * s.moduli.shear);
+  const auto add_tensor = [&](const PlaneStressModuli& m, const std::array<T, 3>& strain, T& xx, T& yy, T& xy) {
+    const T direct(m.direct), cross(m.cross), shear(m.shear);
     const T dxx = direct * strain[0] + cross * strain[1];
     const T dyy = cross * strain[0] + direct * strain[1];
     const T dxy = shear * strain[2];
@@ -230,8 +263,8 @@ inline void update_elastic(const ShellSection& s, const T& area, const ShellIncr
     yy = yy + (dyy - turned);
     xy = xy + (dxy + sheared);
   };
-  add_tensor(t, {e.exx, e.eyy, e.gxy}, r.nxx, r.nyy, r.nxy);
-  add_tensor(bend, {e.kxx, e.kyy, e.kxy}, r.mxx, r.myy, r.mxy);
+  add_tensor(s.membrane, {e.exx, e.eyy, e.gxy}, r.nxx, r.nyy, r.nxy);
+  add_tensor(s.bending, {e.kxx, e.kyy, e.kxy}, r.mxx, r.myy, r.mxy);
 
   const T dqx = cs * e.gxz, dqy = cs * e.gyz;
   T mean_x = r.qxz + T(0.5) * dqx, mean_y = r.qyz + T(0.5) * dqy;
@@ -250,14 +283,15 @@ inline void update_elastic(const ShellSection& s, const T& area, const ShellIncr
 
 /// Internal corner forces and moments A B^T S in global directions, in the frame of the geometry at the step's end.
 template <class T>
-inline void corner_forces(const ShellSection& s, const TriangleFrame<T>& f, const ShellResultants<T>& r,
-                          std::array<Vec3<T>, 3>& force, std::array<Vec3<T>, 3>& moment) noexcept {
-  const ShearRows<T> shear(f);
-  const T kd = drilling_stiffness(s, T(0.5) * f.doubled_area());
+FEXP_INLINE void corner_forces(const ShellStiffness& s, const TriangleFrame<T>& f, const ShellResultants<T>& r,
+                               std::array<Vec3<T>, 3>& force, std::array<Vec3<T>, 3>& moment) noexcept {
+  const T area = T(0.5) * f.doubled_area;
+  const T kd = drilling_stiffness(s, area);
   const T half_drill = T(0.5) * (kd * (r.drill[0] + r.drill[1] + r.drill[2]));
   // A b2, A c2, A c3 [length]
   const T ab2 = T(0.5) * f.y3, ac2 = T(-0.5) * f.x3, ac3 = T(0.5) * f.x2;
   const ShapeDerivatives<T> d(f);
+  const AssumedShear<T> shear(f, d);
 
   const T f2x = ab2 * r.nxx + ac2 * r.nxy + half_drill * d.c2;
   const T f2y = ac2 * r.nyy + ab2 * r.nxy - half_drill * d.b2;
@@ -270,12 +304,11 @@ inline void corner_forces(const ShellSection& s, const TriangleFrame<T>& f, cons
   const T m2y = ab2 * r.mxx + ac2 * r.mxy;
   const T m3x = -(ac3 * r.myy);
   const T m3y = ac3 * r.mxy;
-  const T qx = T(1.0 / 12.0) * r.qxz, qy = T(1.0 / 12.0) * r.qyz;
-  const std::array<T, 3> mx = {shear.xz[0] * qx + shear.yz[0] * qy - (m2x + m3x),
-                               m2x + (shear.xz[2] * qx + shear.yz[2] * qy), m3x + shear.yz[4] * qy};
-  const std::array<T, 3> my = {shear.xz[1] * qx + shear.yz[1] * qy - (m2y + m3y),
-                               m2y + (shear.xz[3] * qx + shear.yz[3] * qy),
-                               m3y + (shear.xz[5] * qx + shear.yz[5] * qy)};
+  std::array<T, 3> mx, my;
+  const T sixth_area = T(1.0 / 6.0) * area;
+  shear.moments(sixth_area * r.qxz, sixth_area * r.qyz, mx, my);
+  mx = {mx[0] - (m2x + m3x), mx[1] + m2x, mx[2] + m3x};
+  my = {my[0] - (m2y + m3y), my[1] + m2y, my[2] + m3y};
 
   force[1] = f2x * f.e1 + f2y * f.e2 + f2z * f.e3;
   force[2] = f3x * f.e1 + f3y * f.e2 + f3z * f.e3;

@@ -40,7 +40,7 @@ namespace fexp::physics {
 /// exceeds its root by less than 3 % up to t = 0.3 sqrt(A), whatever the shape.
 [[nodiscard]] inline double element_frequency_bound(const ShellSection& s, double density,
                                                     const TriangleFrame<double>& f) noexcept {
-  const double area = 0.5 * f.doubled_area();
+  const double area = 0.5 * f.doubled_area;
   const ShapeDerivatives<double> d(f);
   const double b1 = -d.b2, c1 = -(d.c2 + d.c3);
   const double bb = b1 * b1 + d.b2 * d.b2;
@@ -53,14 +53,15 @@ namespace fexp::physics {
   const double membrane = 3.0 / density * membrane_eigenvalue(s.moduli, bb, cc, bc);
   const double drill = drilling_stiffness(s, area) * (1.0 / radius2 + 0.75 * (bb + cc)) / corner;
 
-  const ShearRows<double> rows(f);
+  const AssumedShear<double> shear_terms(f, d);
+  const std::array<double, 6> row_xz = shear_terms.row_xz(), row_yz = shear_terms.row_yz();
   double xx = 0.0, yy = 0.0, xy = 0.0;
   for (std::size_t i = 0; i < 6; ++i) {
-    xx += rows.xz[i] * rows.xz[i];
-    yy += rows.yz[i] * rows.yz[i];
-    xy += rows.xz[i] * rows.yz[i];
+    xx += row_xz[i] * row_xz[i];
+    yy += row_yz[i] * row_yz[i];
+    xy += row_xz[i] * row_yz[i];
   }
-  const double scale = 1.0 / (144.0 * area * area * radius2);
+  const double scale = 1.0 / (36.0 * radius2);
   xx = bb + scale * xx;
   yy = cc + scale * yy;
   xy = bc + scale * xy;

@@ -2,8 +2,11 @@
 #include "solve/island_solver.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 
 #include "base/pack.hpp"
+#include "model/patch_cut.hpp"
 #include "parallel/parallel.hpp"
 #include "solve/loads.hpp"
 
@@ -11,12 +14,17 @@ namespace fexp::solve {
 
 namespace {
 
-/// Nodes of one chunk: small enough to balance, large enough that a chunk is worth a task.
-constexpr Index chunk_nodes = 256;
-/// Chunks and element blocks per task.
-constexpr Index chunk_grain = 2;
-constexpr Index block_grain = 32;
+/// Nodes of one piece of a border: small enough to balance, large enough that a piece is worth a task.
+constexpr Index border_nodes = 256;
+/// Elements per task, and nodes in passes over nodes alone.
+constexpr Index task_elements = 1024;
+constexpr Index task_nodes = 512;
 constexpr Index body_grain = 8;
+
+/// So many of `count` pieces with `items` in all that a task has `wanted` items, about.
+constexpr Index grain(std::size_t count, Index items, Index wanted) noexcept {
+  return items <= 0 ? 1 : std::max(Index{1}, static_cast<Index>(wanted * static_cast<std::int64_t>(count) / items));
+}
 
 }  // namespace
 
@@ -31,21 +39,32 @@ struct IslandSolver::Step {
   [[nodiscard]] double middle_time() const noexcept { return end_time - 0.5 * dt; }
 };
 
-void IslandSolver::assign(const model::Model& model, const model::State& state, std::span<const Index> bodies,
-                          std::span<const Index> barriers) {
+void IslandSolver::assign(const model::Model& model, const Patches& patches, const model::State& state,
+                          std::span<const Index> bodies, std::span<const Index> barriers) {
   bodies_.assign(bodies.begin(), bodies.end());
   barriers_.assign(barriers.begin(), barriers.end());
-  chunks_.clear();
+  pieces_.clear();
+  patch_pieces_.clear();
+  border_pieces_.clear();
   elements_ = 0;
+  nodes_ = 0;
   for (const Index index : bodies_) {
     const model::Body& body = model.bodies[at(index)];
     elements_ += body.elements.size();
-    for (Index begin = body.nodes.begin; begin < body.nodes.end; begin += chunk_nodes) {
-      chunks_.push_back({index, begin, std::min(begin + chunk_nodes, body.nodes.end)});
+    nodes_ += body.nodes.size();
+    for (Index p = patches.body_patches[at(index)].begin; p < patches.body_patches[at(index)].end; ++p) {
+      patch_pieces_.push_back(static_cast<Index>(pieces_.size()));
+      pieces_.push_back({index, p, patches.inner_node.data(), patches.patches[at(p)].nodes});
+    }
+    const IndexRange border = patches.body_border[at(index)];
+    for (Index begin = border.begin; begin < border.end; begin += border_nodes) {
+      border_pieces_.push_back(static_cast<Index>(pieces_.size()));
+      pieces_.push_back(
+          {index, no_index, patches.border_node.data(), {begin, std::min(begin + border_nodes, border.end)}});
     }
   }
-  partials_.resize(chunks_.size());
-  plane_partials_.resize(chunks_.size() * model.planes.size());
+  partials_.resize(pieces_.size());
+  plane_partials_.resize(pieces_.size() * model.planes.size());
   travelled_.resize(bodies_.size());
   contact_.assign(model, bodies_, barriers_, state);
   contact_report_ = {};
@@ -58,8 +77,11 @@ void IslandSolver::evaluate(const model::Model& model, model::State& state, Work
     partial = {};
   }
   contact_forces(still);
-  element_forces(still);
-  accelerate(still);
+  if (!workspace.load.empty()) {
+    load_nodes(still);
+  }
+  advance_pieces(still, Pass::accelerate);
+  act_on_bodies(still);
 }
 
 IslandReport IslandSolver::advance(const model::Model& model, model::State& state, Workspace& workspace,
@@ -68,19 +90,31 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
   std::fill(travelled_.begin(), travelled_.end(), 0.0);
   const double start_time = state.time;
   const Index searches_before = contact_report_.searches;
+  bool opened = false;
   for (Index i = 0; i < plan.steps; ++i) {
     // The last step ends at the very time of the state after it, so that loads evaluated anew there are the same.
     const double end_time = i + 1 == plan.steps ? plan.end_time : start_time + static_cast<double>(i + 1) * plan.dt;
     const Step step{model, state, workspace, plan.dt, end_time};
-    opening_half(step);
-    if (!check_finite(step, total) || !check_motion(step, plan, total)) {
+    if (!opened) {
+      opening_half(step);
+    }
+    if (!check_opened(step, total) || !check_motion(step, plan, total)) {
       return total;
     }
     contact_forces(step);
-    element_forces(step);
-    accelerate(step);
-    closing_half(step);
-    if (!check_finite(step, total)) {
+    const bool hash_due = plan.hash_every > 0 && (state.step + i + 1) % plan.hash_every == 0;
+    opened = !workspace.external && !hash_due && i + 1 < plan.steps;
+    if (workspace.external) {
+      if (!workspace.load.empty()) {
+        load_nodes(step);
+      }
+      advance_pieces(step, Pass::accelerate);
+      act_on_bodies(step);
+      closing_half(step);
+    } else {
+      advance_pieces(step, opened ? Pass::close_and_open : Pass::close);
+    }
+    if (!check_closed(step, total)) {
       return total;
     }
 
@@ -96,7 +130,7 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
       total.deepest_node = contact_report_.deepest_node;
       total.deepest_element = contact_report_.deepest_element;
     }
-    if (plan.hash_every > 0 && (state.step + i + 1) % plan.hash_every == 0) {
+    if (hash_due) {
       record_hashes(step, state.step + i + 1, hashes);
     }
   }
@@ -105,11 +139,12 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
 
 /// One half step of velocities, v += dt/2 a. Mass-proportional damping scales them afterwards, so that it needs no
 /// memory of its force and its work is exactly the kinetic energy it takes.
-void IslandSolver::kick(const Step& step, const Chunk& chunk, Partial& partial) const {
+void IslandSolver::kick(const Step& step, const Piece& piece, Partial& partial) {
   const double half = step.half_dt();
   const double damping = step.model.run.damping;
   const double kept = 1.0 / (1.0 + damping * half);
-  for (Index n = chunk.begin; n < chunk.end; ++n) {
+  for (Index i = piece.nodes.begin; i < piece.nodes.end; ++i) {
+    const Index n = piece.node[i];
     model::NodeMotion& motion = step.state.motion[at(n)];
     const model::NodeAcceleration& acceleration = step.state.acceleration[at(n)];
     Vec3d v = motion.velocity + half * acceleration.linear;
@@ -141,17 +176,19 @@ void IslandSolver::opening_half(const Step& step) {
       ledger.external_angular_impulse += half * actions.moment;
     }
   }
-  const auto count = static_cast<Index>(chunks_.size());
-  parallel::for_each(count, chunk_grain, [&](Index i) {
+  const auto count = static_cast<Index>(pieces_.size());
+  const Index pieces_per_task = grain(pieces_.size(), nodes_, task_nodes);
+  parallel::for_each(count, pieces_per_task, [&](Index i) {
     partials_[at(i)] = {};
-    kick(step, chunks_[at(i)], partials_[at(i)]);
+    kick(step, pieces_[at(i)], partials_[at(i)]);
   });
   prescribe(step, HalfStep::opening);
-  parallel::for_each(count, chunk_grain, [&](Index i) {
-    const Chunk& chunk = chunks_[at(i)];
-    Partial& partial = partials_[at(i)];
+  parallel::for_each(count, pieces_per_task, [&](Index p) {
+    const Piece& piece = pieces_[at(p)];
+    Partial& partial = partials_[at(p)];
     double largest = 0.0;
-    for (Index n = chunk.begin; n < chunk.end; ++n) {
+    for (Index i = piece.nodes.begin; i < piece.nodes.end; ++i) {
+      const Index n = piece.node[i];
       model::NodeMotion& motion = step.state.motion[at(n)];
       if (!step.workspace.load.empty()) {
         const NodalAction& load = step.workspace.load[at(n)];
@@ -179,36 +216,43 @@ void IslandSolver::prescribe(const Step& step, HalfStep half) {
   }
 }
 
-/// False, with the lowest node concerned, when a velocity is not finite. A sum that overflows counts as well.
-bool IslandSolver::check_finite(const Step& step, IslandReport& report) const {
-  for (std::size_t c = 0; c < chunks_.size(); ++c) {
-    if (partials_[c].finite) {
+bool IslandSolver::check_opened(const Step& step, IslandReport& report) const {
+  return std::ranges::all_of(partials_, &Partial::finite) || find_broken(step, report);
+}
+
+bool IslandSolver::check_closed(const Step& step, IslandReport& report) const {
+  return std::ranges::all_of(partials_, &Partial::closing_finite) || find_broken(step, report);
+}
+
+/// False, with the lowest node whose velocity is not finite. A square that overflows counts as well.
+bool IslandSolver::find_broken(const Step& step, IslandReport& report) const {
+  report.stop = StopReason::not_finite;
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    const Piece& piece = pieces_[p];
+    if (partials_[p].finite && partials_[p].closing_finite) {
       continue;
     }
-    const auto is_sound = [&](Index n) {
+    for (Index i = piece.nodes.begin; i < piece.nodes.end; ++i) {
+      const Index n = piece.node[i];
       const model::NodeMotion& motion = step.state.motion[at(n)];
       const double squares = dot(motion.velocity, motion.velocity) + dot(motion.rotation_rate, motion.rotation_rate);
-      return squares - squares == 0.0;
-    };
-    report.stop = StopReason::not_finite;
-    report.stop_body = chunks_[c].body;
-    report.stop_node = chunks_[c].begin;
-    while (report.stop_node + 1 < chunks_[c].end && is_sound(report.stop_node)) {
-      ++report.stop_node;
+      if (squares - squares != 0.0 && (report.stop_node == no_index || n < report.stop_node)) {
+        report.stop_body = piece.body;
+        report.stop_node = n;
+      }
     }
-    return false;
   }
-  return true;
+  return false;
 }
 
 /// False when a body may have left its swept box; otherwise tells contact how far nodes have moved.
 bool IslandSolver::check_motion(const Step& step, const EpochPlan& plan, IslandReport& report) {
   double largest = 0.0;
-  std::size_t chunk = 0;
+  std::size_t piece = 0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     double speed2 = 0.0;
-    for (; chunk < chunks_.size() && chunks_[chunk].body == bodies_[b]; ++chunk) {
-      speed2 = std::max(speed2, partials_[chunk].largest_speed2);
+    for (; piece < pieces_.size() && pieces_[piece].body == bodies_[b]; ++piece) {
+      speed2 = std::max(speed2, partials_[piece].largest_speed2);
     }
     const double way = square_root(speed2) * step.dt;
     largest = std::max(largest, way);
@@ -244,63 +288,79 @@ void IslandSolver::contact_forces(const Step& step) {
   }
 }
 
-void IslandSolver::element_forces(const Step& step) {
-  const ElementKernelArguments arguments{step.state.motion.data(),
-                                         step.model.triangle.data(),
-                                         step.model.blocks.data(),
-                                         step.workspace.sections.data(),
-                                         step.state.history.data(),
-                                         step.workspace.corner_force.data(),
-                                         step.dt};
-  const ElementKernel kernel = step.workspace.kernel.function;
-  const auto update_body = [&](Index i) {
-    const IndexRange blocks = step.model.bodies[at(bodies_[at(i)])].blocks;
-    parallel::for_ranges(blocks.size(), block_grain,
-                         [&](Index begin, Index end) { kernel(arguments, blocks.begin + begin, blocks.begin + end); });
-  };
-  parallel::for_each(static_cast<Index>(bodies_.size()), body_grain, update_body);
+void IslandSolver::load_nodes(const Step& step) {
+  parallel::for_each(static_cast<Index>(bodies_.size()), body_grain, [&](Index i) {
+    evaluate_loads(step.model, step.state.motion.data(), step.end_time, bodies_[at(i)], step.workspace.load.data());
+  });
 }
 
-void IslandSolver::accelerate(const Step& step) {
-  Workspace& workspace = step.workspace;
-  const auto body_count = static_cast<Index>(bodies_.size());
-  if (!workspace.load.empty()) {
-    parallel::for_each(body_count, body_grain, [&](Index i) {
-      evaluate_loads(step.model, step.state.motion.data(), step.end_time, bodies_[at(i)], workspace.load.data());
-    });
+/// Element forces and what the pass makes of them: patch by patch, each with its inner nodes while the forces are in
+/// the cache, then the nodes of borders.
+void IslandSolver::advance_pieces(const Step& step, Pass pass) {
+  parallel::for_each(static_cast<Index>(patch_pieces_.size()), grain(patch_pieces_.size(), elements_, task_elements),
+                     [&](Index i) { advance_patch(step, pass, at(patch_pieces_[at(i)])); });
+  NodeKernelArguments border = node_arguments(step, pass);
+  border.corner_force = step.workspace.border_force.data();
+  border.corner_start = step.workspace.patches.border_start.data();
+  parallel::for_each(static_cast<Index>(border_pieces_.size()), 1,
+                     [&](Index i) { advance_nodes(step, pass, border, at(border_pieces_[at(i)])); });
+}
+
+void IslandSolver::advance_patch(const Step& step, Pass pass, std::size_t piece) {
+  // Bytes, because setting all of them to zero first would cost as much as a twentieth of the elements.
+  alignas(64) std::array<std::byte, std::size_t{3} * model::patch_elements * sizeof(CornerForce)> storage;
+  auto* const corner_force = reinterpret_cast<CornerForce*>(storage.data());
+  const Patches& patches = step.workspace.patches;
+  const Patch& patch = patches.patches[at(pieces_[piece].patch)];
+  step.workspace.kernel.elements(
+      {step.state.motion.data(), step.model.triangle.data(), step.model.blocks.data(), step.workspace.sections.data(),
+       step.state.history.data(), corner_force, patch.elements.begin, step.dt},
+      patch.blocks.begin, patch.blocks.end);
+  const Index first_corner = 3 * patch.elements.begin;
+  for (Index i = patch.shared.begin; i < patch.shared.end; ++i) {
+    const SharedCorner& shared = patches.shared_corner[at(i)];
+    step.workspace.border_force[at(shared.place)] = corner_force[shared.corner - first_corner];
   }
-  parallel::for_each(static_cast<Index>(chunks_.size()), chunk_grain, [&](Index i) { accelerate_chunk(step, at(i)); });
-  if (!workspace.external) {
+  NodeKernelArguments inner = node_arguments(step, pass);
+  inner.corner_force = corner_force;
+  inner.corner = step.model.corner.data();
+  inner.corner_start = step.model.corner_start.data();
+  inner.first_corner = first_corner;
+  advance_nodes(step, pass, inner, piece);
+}
+
+NodeKernelArguments IslandSolver::node_arguments(const Step& step, Pass pass) const {
+  NodeKernelArguments arguments;
+  arguments.contact_force = contact_written_ ? step.workspace.contact.force.data() : nullptr;
+  arguments.inverse_inertia = step.workspace.inverse_inertia.data();
+  arguments.motion = step.state.motion.data();
+  arguments.acceleration = step.state.acceleration.data();
+  arguments.half_dt = step.half_dt();
+  arguments.dt = step.dt;
+  arguments.go_on = pass == Pass::close_and_open;
+  return arguments;
+}
+
+void IslandSolver::advance_nodes(const Step& step, Pass pass, const NodeKernelArguments& arguments, std::size_t index) {
+  const Piece& piece = pieces_[index];
+  if (pass == Pass::accelerate) {
+    accelerate(step, arguments, index);
     return;
   }
-  const std::size_t planes = step.model.planes.size();
-  barrier_frequency2_ = 0.0;
-  std::size_t chunk = 0;
-  for (const Index body : bodies_) {
-    BodyActions& actions = workspace.actions[at(body)];
-    actions.force = workspace.body_contact[at(body)].barrier_force;
-    actions.moment = workspace.body_contact[at(body)].barrier_moment;
-    std::fill(actions.plane_force.begin(), actions.plane_force.end(), Vec3d{});
-    double barrier_energy = 0.0;
-    for (; chunk < chunks_.size() && chunks_[chunk].body == body; ++chunk) {
-      actions.force += partials_[chunk].force;
-      actions.moment += partials_[chunk].moment;
-      barrier_energy += partials_[chunk].barrier_energy;
-      barrier_frequency2_ = maximum(barrier_frequency2_, partials_[chunk].barrier_frequency2);
-      for (std::size_t p = 0; p < planes; ++p) {
-        actions.plane_force[p] += plane_partials_[chunk * planes + p];
-      }
-    }
-    step.state.ledger[at(body)].barrier_energy = barrier_energy;
-    hold_constraints(step.model, step.state, body, actions);
-  }
+  const NodeKernelReport report =
+      step.workspace.kernel.nodes(arguments, piece.node, piece.nodes.begin, piece.nodes.end);
+  Partial& partial = partials_[index];
+  partial.closing_finite = report.closing_finite;
+  partial.finite = report.opening_finite;
+  partial.largest_speed2 = report.largest_speed2;
 }
 
-void IslandSolver::accelerate_chunk(const Step& step, std::size_t chunk_index) {
+/// Accelerations of a piece's nodes and what acts on them from outside. The slow twin of the node kernels.
+void IslandSolver::accelerate(const Step& step, const NodeKernelArguments& k, std::size_t index) {
   const model::Model& model = step.model;
   const Workspace& workspace = step.workspace;
-  const Chunk& chunk = chunks_[chunk_index];
-  Partial& partial = partials_[chunk_index];
+  const Piece& piece = pieces_[index];
+  Partial& partial = partials_[index];
   const bool loaded = !workspace.load.empty();
   const std::size_t planes = model.planes.size();
   const double half = step.half_dt();
@@ -309,17 +369,19 @@ void IslandSolver::accelerate_chunk(const Step& step, std::size_t chunk_index) {
   partial.barrier_energy = 0.0;
   partial.barrier_frequency2 = 0.0;
   for (std::size_t p = 0; p < planes; ++p) {
-    plane_partials_[chunk_index * planes + p] = {};
+    plane_partials_[index * planes + p] = {};
   }
-  for (Index n = chunk.begin; n < chunk.end; ++n) {
+  for (Index i = piece.nodes.begin; i < piece.nodes.end; ++i) {
+    const Index n = piece.node[i];
+    const Index row = k.corner != nullptr ? n : i;
     Vec3d internal, internal_moment;
-    for (Index c = model.corner_start[at(n)]; c < model.corner_start[at(n) + 1]; ++c) {
-      const CornerForce& corner = workspace.corner_force[at(model.corner[at(c)])];
+    for (Index c = k.corner_start[row]; c < k.corner_start[row + 1]; ++c) {
+      const CornerForce& corner = k.corner_force[k.corner != nullptr ? k.corner[c] - k.first_corner : c];
       internal += corner.force;
       internal_moment += corner.moment;
     }
-    Vec3d force = workspace.contact.force[at(n)] - internal;
-    Vec3d moment = -internal_moment;
+    Vec3d force = (k.contact_force != nullptr ? k.contact_force[n] : Vec3d{}) - internal;
+    Vec3d moment = Vec3d{} - internal_moment;
     const model::NodeMotion& motion = step.state.motion[at(n)];
     if (workspace.external) {
       NodalAction outside;
@@ -334,7 +396,7 @@ void IslandSolver::accelerate_chunk(const Step& step, std::size_t chunk_index) {
         outside.force += reaction.force;
         partial.barrier_energy += reaction.energy;
         stiffness += reaction.stiffness;
-        plane_partials_[chunk_index * planes + p] += reaction.force;
+        plane_partials_[index * planes + p] += reaction.force;
       }
       partial.barrier_frequency2 = maximum(partial.barrier_frequency2, stiffness / model.mass[at(n)]);
       partial.force += outside.force;
@@ -342,26 +404,57 @@ void IslandSolver::accelerate_chunk(const Step& step, std::size_t chunk_index) {
       force += outside.force;
       moment += outside.moment;
     }
-    step.state.acceleration[at(n)] = {(1.0 / model.mass[at(n)]) * force, (1.0 / model.inertia[at(n)]) * moment};
+    const InverseInertia& inverse = k.inverse_inertia[n];
+    step.state.acceleration[at(n)] = {inverse.mass * force, inverse.inertia * moment};
   }
 }
 
-void IslandSolver::closing_half(const Step& step) {
-  parallel::for_each(static_cast<Index>(chunks_.size()), chunk_grain,
-                     [&](Index i) { kick(step, chunks_[at(i)], partials_[at(i)]); });
-  if (!step.workspace.external) {
+/// Sums of what acts on every body from outside, and held components.
+void IslandSolver::act_on_bodies(const Step& step) {
+  Workspace& workspace = step.workspace;
+  if (!workspace.external) {
     return;
   }
+  const std::size_t planes = step.model.planes.size();
+  barrier_frequency2_ = 0.0;
+  std::size_t piece = 0;
+  for (const Index body : bodies_) {
+    BodyActions& actions = workspace.actions[at(body)];
+    actions.force = workspace.body_contact[at(body)].barrier_force;
+    actions.moment = workspace.body_contact[at(body)].barrier_moment;
+    std::fill(actions.plane_force.begin(), actions.plane_force.end(), Vec3d{});
+    double barrier_energy = 0.0;
+    for (; piece < pieces_.size() && pieces_[piece].body == body; ++piece) {
+      actions.force += partials_[piece].force;
+      actions.moment += partials_[piece].moment;
+      barrier_energy += partials_[piece].barrier_energy;
+      barrier_frequency2_ = maximum(barrier_frequency2_, partials_[piece].barrier_frequency2);
+      for (std::size_t p = 0; p < planes; ++p) {
+        actions.plane_force[p] += plane_partials_[piece * planes + p];
+      }
+    }
+    step.state.ledger[at(body)].barrier_energy = barrier_energy;
+    hold_constraints(step.model, step.state, body, actions);
+  }
+}
+
+/// The closing half step where something acts from outside.
+void IslandSolver::closing_half(const Step& step) {
+  parallel::for_each(static_cast<Index>(pieces_.size()), grain(pieces_.size(), nodes_, task_nodes), [&](Index i) {
+    partials_[at(i)].finite = true;
+    kick(step, pieces_[at(i)], partials_[at(i)]);
+    partials_[at(i)].closing_finite = partials_[at(i)].finite;
+  });
   prescribe(step, HalfStep::closing);
   const double half = step.half_dt();
-  std::size_t chunk = 0;
+  std::size_t piece = 0;
   for (const Index body : bodies_) {
     const BodyActions& actions = step.workspace.actions[at(body)];
     model::BodyLedger& ledger = step.state.ledger[at(body)];
     ledger.external_impulse += half * actions.force;
     ledger.external_angular_impulse += half * actions.moment;
-    for (; chunk < chunks_.size() && chunks_[chunk].body == body; ++chunk) {
-      const Partial& partial = partials_[chunk];
+    for (; piece < pieces_.size() && pieces_[piece].body == body; ++piece) {
+      const Partial& partial = partials_[piece];
       ledger.external_work += partial.external_work;
       ledger.damping_work += partial.damping_work;
       ledger.external_impulse += partial.impulse;

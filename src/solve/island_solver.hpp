@@ -51,9 +51,9 @@ struct IslandReport {
 /// so they can be stepped side by side. Allocates nothing inside a step except in a contact search.
 class IslandSolver {
  public:
-  /// Takes up an island. `bodies` and `barriers` are ascending.
-  void assign(const model::Model& model, const model::State& state, std::span<const Index> bodies,
-              std::span<const Index> barriers);
+  /// Takes up an island. `bodies` and `barriers` are ascending; `patches`, which must outlive it, those of the model.
+  void assign(const model::Model& model, const Patches& patches, const model::State& state,
+              std::span<const Index> bodies, std::span<const Index> barriers);
 
   /// Forces, accelerations and external actions of the present state, without moving it: at the start of a run and
   /// after the state was put back or came from elsewhere. `time` is that of the state.
@@ -71,16 +71,18 @@ class IslandSolver {
   [[nodiscard]] Index element_count() const noexcept { return elements_; }
 
  private:
-  /// Consecutive nodes of one body: the unit of parallel work and of ordered sums.
-  struct Chunk {
+  /// The inner nodes of a patch or a part of a body's border: the unit of parallel work and of ordered sums.
+  struct Piece {
     Index body{};
-    Index begin{};
-    Index end{};
+    Index patch{no_index};  ///< no_index: a part of the border
+    const Index* node{};    ///< What `nodes` points into
+    IndexRange nodes;
   };
-  /// What one chunk contributes to its body in a pass; summed in chunk order.
+  /// What one piece contributes to its body in a pass; summed in order.
   struct Partial {
     double largest_speed2{};
-    bool finite{true};
+    bool finite{true};          ///< Velocities after the opening half step
+    bool closing_finite{true};  ///< After the closing one
     double external_work{};
     double damping_work{};
     double barrier_energy{};
@@ -90,31 +92,43 @@ class IslandSolver {
     Vec3d impulse;
     Vec3d angular_impulse;
   };
+  /// What follows the element forces: accelerations alone, as something acts from outside that has to be seen to; the
+  /// closing half step, too; or that and the opening half and the motion of the next step.
+  enum class Pass { accelerate, close, close_and_open };
 
   struct Step;  // operands of one step, defined with the passes
 
   void opening_half(const Step& step);
   void contact_forces(const Step& step);
-  void element_forces(const Step& step);
-  void accelerate(const Step& step);
+  void load_nodes(const Step& step);
+  void advance_pieces(const Step& step, Pass pass);
+  void advance_patch(const Step& step, Pass pass, std::size_t piece);
+  void advance_nodes(const Step& step, Pass pass, const NodeKernelArguments& arguments, std::size_t index);
+  void accelerate(const Step& step, const NodeKernelArguments& k, std::size_t index);
+  void act_on_bodies(const Step& step);
   void closing_half(const Step& step);
-  void kick(const Step& step, const Chunk& chunk, Partial& partial) const;
-  void accelerate_chunk(const Step& step, std::size_t chunk_index);
+  static void kick(const Step& step, const Piece& piece, Partial& partial);
   void prescribe(const Step& step, HalfStep half);
-  [[nodiscard]] bool check_finite(const Step& step, IslandReport& report) const;
+  [[nodiscard]] NodeKernelArguments node_arguments(const Step& step, Pass pass) const;
+  [[nodiscard]] bool check_opened(const Step& step, IslandReport& report) const;
+  [[nodiscard]] bool check_closed(const Step& step, IslandReport& report) const;
+  [[nodiscard]] bool find_broken(const Step& step, IslandReport& report) const;
   [[nodiscard]] bool check_motion(const Step& step, const EpochPlan& plan, IslandReport& report);
   void record_hashes(const Step& step, std::int64_t number, std::vector<HashRecord>& hashes) const;
 
   contact::IslandContact contact_;
   std::vector<Index> bodies_;
   std::vector<Index> barriers_;
-  std::vector<Chunk> chunks_;
-  std::vector<Partial> partials_;      // [chunks]
-  std::vector<Vec3d> plane_partials_;  // [chunks][planes]
+  std::vector<Piece> pieces_;          // In order of bodies, of each the patches first
+  std::vector<Index> patch_pieces_;    // Those that are patches
+  std::vector<Index> border_pieces_;   // The others
+  std::vector<Partial> partials_;      // [pieces]
+  std::vector<Vec3d> plane_partials_;  // [pieces][planes]
   std::vector<double> travelled_;      // [bodies of the island]: bound of the distance since the epoch's start
   contact::ContactReport contact_report_;
   double barrier_frequency2_{};
   Index elements_{};
+  Index nodes_{};
   bool contact_written_{};
 };
 

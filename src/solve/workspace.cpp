@@ -3,11 +3,16 @@
 
 namespace fexp::solve {
 
-Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel) : kernel(selected_kernel) {
+Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
+    : kernel(selected_kernel), patches(model) {
   for (const model::SectionData& section : model.sections) {
-    sections.push_back({section.thickness, section.moduli, model.run.drilling});
+    sections.emplace_back(physics::ShellSection{section.thickness, section.moduli, model.run.drilling});
   }
-  corner_force.resize(3 * model.triangle.size());
+  border_force.resize(at(patches.border_start.back()));
+  inverse_inertia.reserve(model.mass.size());
+  for (std::size_t n = 0; n < model.mass.size(); ++n) {
+    inverse_inertia.push_back({1.0 / model.mass[n], 1.0 / model.inertia[n]});
+  }
   contact.force.resize(model.reference_position.size());
   contact.stiffness.resize(model.reference_position.size());
   if (!model.gravity.empty() || !model.pressure.empty() || !model.forces.empty()) {

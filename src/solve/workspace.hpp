@@ -7,7 +7,8 @@
 #include "contact/island_contact.hpp"
 #include "model/model.hpp"
 #include "physics/c0_triangle.hpp"
-#include "solve/element_kernels.hpp"
+#include "solve/kernels.hpp"
+#include "solve/patches.hpp"
 
 namespace fexp::solve {
 
@@ -29,8 +30,10 @@ struct Workspace {
   explicit Workspace(const model::Model& model, SelectedKernel selected_kernel);
 
   SelectedKernel kernel;
-  std::vector<physics::ShellSection> sections;  // [sections]
-  AlignedVector<CornerForce> corner_force;      // [elements][3]
+  std::vector<physics::ShellStiffness> sections;  // [sections]
+  Patches patches;
+  AlignedVector<CornerForce> border_force;      // [corners of border nodes]
+  std::vector<InverseInertia> inverse_inertia;  // [nodes]
   contact::NodeContact contact;                 // At the last evaluated positions
   /// Loads and gravity at the last evaluated instant, shape [nodes]; empty when the model has none.
   std::vector<NodalAction> load;

@@ -85,7 +85,7 @@ TEST_P(same_bits, for_any_number_of_threads_and_any_kernel) {
   for (const KernelChoice kernel : kernels) {
     const solve::SelectedKernel selected = solve::select_element_kernel(kernel);
     SCOPED_TRACE(selected.name);
-    if (selected.function != nullptr) {
+    if (selected.elements != nullptr) {
       parallel::with_threads(2, [&] { expect_same(test::run_scene(model, GetParam().duration, kernel), reference); });
     }
   }
@@ -141,7 +141,7 @@ class Island {
     for (Index b = 0; b < model_.body_count(); ++b) {
       bodies.push_back(b);
     }
-    solver_.assign(model_, state_, bodies, {});
+    solver_.assign(model_, workspace_.patches, state_, bodies, {});
     solver_.evaluate(model_, state_, workspace_);
   }
 

@@ -42,7 +42,7 @@ class DirectRun {
     for (Index b = 0; b < model.body_count(); ++b) {
       (model.bodies[at(b)].barrier ? barriers : bodies).push_back(b);
     }
-    island_.assign(model, state, bodies, barriers);
+    island_.assign(model, workspace.patches, state, bodies, barriers);
     island_.evaluate(model, state, workspace);
   }
 

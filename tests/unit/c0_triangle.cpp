@@ -130,7 +130,7 @@ TEST(corner_forces, do_the_work_of_the_resultants_on_any_motion) {
   for (int i = 0; i < 200; ++i) {
     const Corners x{states.vector(), states.vector(), states.vector()};
     const TriangleFrame<double> frame = triangle_frame(x[1] - x[0], x[2] - x[0]);
-    const double area = 0.5 * frame.doubled_area();
+    const double area = 0.5 * frame.doubled_area;
     const Corners v{states.vector(), states.vector(), states.vector()};
     const Corners w{states.vector(), states.vector(), states.vector()};
     const ShellResultants<double> r = states.resultants();

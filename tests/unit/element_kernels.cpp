@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solve/element_kernels.hpp"
+#include "solve/kernels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ struct RandomPlate {
       value = 1e4 * unit(random);
     }
     for (const model::SectionData& section : model.sections) {
-      sections.push_back({section.thickness, section.moduli, 0.1});
+      sections.emplace_back(physics::ShellSection{section.thickness, section.moduli, 0.1});
     }
   }
 
@@ -42,13 +42,13 @@ struct RandomPlate {
 
   void step(ElementKernel kernel, double dt) {
     kernel({state.motion.data(), model.triangle.data(), model.blocks.data(), sections.data(), state.history.data(),
-            corner_force.data(), dt},
+            corner_force.data(), 0, dt},
            0, model.block_count());
   }
 
   model::Model model;
   model::State state;
-  std::vector<physics::ShellSection> sections;
+  std::vector<physics::ShellStiffness> sections;
   std::vector<CornerForce> corner_force;
 };
 
@@ -78,17 +78,17 @@ TEST(element_kernels, of_every_width_give_the_bits_of_the_scalar_one) {
   RandomPlate scalar;
   ASSERT_NE(scalar.model.element_count() % model::block_lanes, 0) << "the last block must not be full";
   for (int i = 0; i < 3; ++i) {
-    scalar.step(select_element_kernel(KernelChoice::scalar).function, 1e-5);
+    scalar.step(select_element_kernel(KernelChoice::scalar).elements, 1e-5);
   }
   int compared = 0;
   for (const KernelChoice choice : {KernelChoice::baseline, KernelChoice::avx2, KernelChoice::avx512}) {
     const SelectedKernel kernel = select_element_kernel(choice);
-    if (kernel.function == nullptr) {
+    if (kernel.elements == nullptr) {
       continue;  // this processor has no such instructions
     }
     RandomPlate packed;
     for (int i = 0; i < 3; ++i) {
-      packed.step(kernel.function, 1e-5);
+      packed.step(kernel.elements, 1e-5);
     }
     EXPECT_EQ(different_elements(scalar, packed), 0) << kernel.name;
     ++compared;
@@ -98,9 +98,9 @@ TEST(element_kernels, of_every_width_give_the_bits_of_the_scalar_one) {
 
 TEST(element_kernels, leave_the_state_alone_when_no_time_passes) {
   RandomPlate moved;
-  moved.step(select_element_kernel(KernelChoice::automatic).function, 1e-5);
+  moved.step(select_element_kernel(KernelChoice::automatic).elements, 1e-5);
   RandomPlate still = moved;
-  still.step(select_element_kernel(KernelChoice::automatic).function, 0.0);
+  still.step(select_element_kernel(KernelChoice::automatic).elements, 0.0);
   EXPECT_EQ(different_elements(moved, still), 0);
 }
 

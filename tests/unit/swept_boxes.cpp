@@ -98,7 +98,7 @@ TEST(swept_boxes, no_node_leaves_its_box_unless_the_guard_trips) {
     for (Index n = 1; n <= steps; ++n) {
       model::State state = model::initial_state(model);
       solve::IslandSolver island;
-      island.assign(model, state, std::vector<Index>{0}, {});
+      island.assign(model, workspace.patches, state, std::vector<Index>{0}, {});
       island.evaluate(model, state, workspace);
       const std::vector<double> allowance = travel_allowance(model, state, dt, steps);
       Box box;

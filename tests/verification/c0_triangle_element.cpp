@@ -67,7 +67,7 @@ PatchResult load_patch(const Patch& patch, const std::vector<Vec3d>& v, const st
     const auto frame = frame_of(x);
     ShellResultants<double> s{};
     const auto e = fexp::physics::strain_increment(frame, vt, wt, short_step);
-    fexp::physics::update_elastic(patch.section, 0.5 * frame.doubled_area(), e, s);
+    fexp::physics::update_elastic(patch.section, 0.5 * frame.doubled_area, e, s);
     for (double* value :
          {&s.nxx, &s.nyy, &s.nxy, &s.mxx, &s.myy, &s.mxy, &s.qxz, &s.qyz, &s.drill[0], &s.drill[1], &s.drill[2]}) {
       *value /= short_step;
@@ -198,7 +198,7 @@ Matrix18 element_stiffness(const ShellSection& section, const Corners& x) {
     Vec3d& target = j % 6 < 3 ? v[j / 6] : w[j / 6];
     (j % 3 == 0 ? target.x : j % 3 == 1 ? target.y : target.z) = 1.0;
     ShellResultants<double> s{};
-    fexp::physics::update_elastic(section, 0.5 * frame.doubled_area(),
+    fexp::physics::update_elastic(section, 0.5 * frame.doubled_area,
                                   fexp::physics::strain_increment(frame, v, w, short_step), s);
     Corners f, m;
     fexp::physics::corner_forces(section, frame, s, f, m);
@@ -278,7 +278,7 @@ TEST(c0_triangle, stiffness_is_symmetric_and_does_not_depend_on_the_first_corner
 /// Critical step 2/omega of one free element from all 18 degrees of freedom.
 double exact_critical_step(const ShellSection& section, double density, const Corners& x) {
   Matrix18 k = element_stiffness(section, x);
-  const double area = 0.5 * frame_of(x).doubled_area();
+  const double area = 0.5 * frame_of(x).doubled_area;
   const double mass = fexp::physics::corner_mass(density, section.thickness, area);
   const double inertia = fexp::physics::corner_inertia(mass, section.thickness, area);
   for (std::size_t i = 0; i < 18; ++i) {
@@ -313,7 +313,7 @@ TEST(critical_step, is_safe_and_close_for_triangles_of_any_shape) {
     for (Vec3d& corner : x) {
       corner = {unit(random), unit(random), unit(random)};
     }
-    const double side = std::sqrt(0.5 * frame_of(x).doubled_area());
+    const double side = std::sqrt(0.5 * frame_of(x).doubled_area);
     const double thickness = 0.3 * side * std::pow(10.0, -1.5 * (1.0 + unit(random)));
     const fexp::physics::LinearElastic law{1.0, 1.0, 0.24 + 0.24 * unit(random)};
     const ShellSection section{thickness, law.moduli(), 0.5 * (1.0 + unit(random))};

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solve/element_kernels.hpp"
+#include "solve/kernels.hpp"
 
 #include "solve/kernels/element_kernel.hpp"
+#include "solve/kernels/node_kernel.hpp"
 
 namespace fexp::solve {
 
@@ -18,14 +19,15 @@ bool has_avx512() noexcept {
 }  // namespace
 
 SelectedKernel select_element_kernel(KernelChoice choice) noexcept {
-  const SelectedKernel scalar{kernels::update_blocks_scalar, "scalar"};
-  const SelectedKernel baseline{kernels::update_blocks_baseline, "baseline"};
+  const SelectedKernel scalar{kernels::update_blocks_scalar, kernels::update_nodes_scalar, "scalar"};
+  const SelectedKernel baseline{kernels::update_blocks_baseline, kernels::update_nodes_baseline, "baseline"};
 #if defined(__x86_64__)
-  const SelectedKernel avx2{has_avx2() ? kernels::update_blocks_avx2 : nullptr, "avx2"};
-  const SelectedKernel avx512{has_avx512() ? kernels::update_blocks_avx512 : nullptr, "avx512"};
+  const SelectedKernel avx2{has_avx2() ? kernels::update_blocks_avx2 : nullptr, kernels::update_nodes_avx2, "avx2"};
+  const SelectedKernel avx512{has_avx512() ? kernels::update_blocks_avx512 : nullptr, kernels::update_nodes_avx512,
+                              "avx512"};
 #else
-  const SelectedKernel avx2{nullptr, "avx2"};
-  const SelectedKernel avx512{nullptr, "avx512"};
+  const SelectedKernel avx2{nullptr, nullptr, "avx2"};
+  const SelectedKernel avx512{nullptr, nullptr, "avx512"};
 #endif
   switch (choice) {
     case KernelChoice::scalar:
@@ -39,10 +41,10 @@ SelectedKernel select_element_kernel(KernelChoice choice) noexcept {
     case KernelChoice::automatic:
       break;
   }
-  if (avx512.function != nullptr) {
+  if (avx512.elements != nullptr) {
     return avx512;
   }
-  return avx2.function != nullptr ? avx2 : baseline;
+  return avx2.elements != nullptr ? avx2 : baseline;
 }
 
 }  // namespace fexp::solve

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/mesh_order.hpp"
+
+#include <algorithm>
+
+#include "model/patch_cut.hpp"
+
+namespace fexp::model {
+
+namespace {
+
+struct Centre {
+  Vec3d point;
+  Index triangle{};
+};
+
+/// Patches [first, last) of `count` in all; `centres` are their triangles.
+void halve(std::span<Centre> centres, Index blocks, Index count, Index first, Index last) {
+  if (last - first < 2) {
+    std::ranges::sort(centres, {}, &Centre::triangle);
+    return;
+  }
+  Box box;
+  for (const Centre& centre : centres) {
+    box.include(centre.point);
+  }
+  const Vec3d extent = box.high - box.low;
+  double Vec3d::*const axis = extent.x >= extent.y && extent.x >= extent.z ? &Vec3d::x
+                              : extent.y >= extent.z                       ? &Vec3d::y
+                                                                           : &Vec3d::z;
+  const Index middle = first + (last - first) / 2;
+  const Index cut = block_lanes * (patch_begin(blocks, count, middle) - patch_begin(blocks, count, first));
+  const auto half = centres.begin() + cut;
+  std::nth_element(centres.begin(), half, centres.end(), [axis](const Centre& a, const Centre& b) {
+    // A total order, so that the same mesh is cut the same way everywhere.
+    return a.point.*axis != b.point.*axis ? a.point.*axis < b.point.*axis : a.triangle < b.triangle;
+  });
+  halve({centres.begin(), half}, blocks, count, first, middle);
+  halve({half, centres.end()}, blocks, count, middle, last);
+}
+
+}  // namespace
+
+void order_by_place(const std::vector<Vec3d>& position, const std::vector<Triangle>& triangle, std::span<Index> order) {
+  const Index blocks = (static_cast<Index>(order.size()) + block_lanes - 1) / block_lanes;
+  const Index count = patch_count(blocks);
+  if (count < 2) {
+    return;
+  }
+  std::vector<Centre> centres;
+  centres.reserve(order.size());
+  for (const Index t : order) {
+    const Triangle& corners = triangle[at(t)];
+    // Three times the centre, which is as good.
+    centres.push_back({position[at(corners[0])] + position[at(corners[1])] + position[at(corners[2])], t});
+  }
+  halve(centres, blocks, count, 0, count);
+  std::ranges::transform(centres, order.begin(), &Centre::triangle);
+}
+
+}  // namespace fexp::model

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/patches.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "model/mesh_order.hpp"
+#include "model/patch_cut.hpp"
+#include "solve/kernels.hpp"
+#include "solve/workspace.hpp"
+#include "support/descriptions.hpp"
+
+namespace fexp::solve {
+namespace {
+
+/// A plate of several patches, and one of a single one.
+model::Model two_plates(int cells) {
+  model::Description d = test::description({7850.0, 2.1e11, 0.3}, 0.003);
+  test::add_body(d, "large", model::Plate{1.0, 1.0, cells, cells, "alternating"});
+  test::add_body(d, "small", model::Plate{0.1, 0.1, 3, 3, "one"}).translate = {0.0, 0.0, 1.0};
+  return test::build(d);
+}
+
+TEST(patches, hold_every_block_once_and_no_more_elements_than_fit) {
+  const model::Model model = two_plates(50);
+  const Patches cut(model);
+  ASSERT_GT(cut.body_patches[0].size(), 5);
+  EXPECT_EQ(cut.body_patches[1].size(), 1);
+  Index block = 0, element = 0;
+  for (const Patch& patch : cut.patches) {
+    EXPECT_EQ(patch.blocks.begin, block);
+    EXPECT_EQ(patch.elements.begin, element);
+    EXPECT_GT(patch.elements.size(), 0);
+    EXPECT_LE(patch.elements.size(), model::patch_elements);
+    block = patch.blocks.end;
+    element = patch.elements.end;
+  }
+  EXPECT_EQ(block, model.block_count());
+  EXPECT_EQ(element, model.element_count());
+}
+
+TEST(patches, hold_every_node_once_and_all_corners_of_their_inner_nodes) {
+  const model::Model model = two_plates(50);
+  const Patches cut(model);
+  std::vector<Index> times(at(model.node_count()), 0);
+  for (const Patch& patch : cut.patches) {
+    for (Index i = patch.nodes.begin; i < patch.nodes.end; ++i) {
+      const Index node = cut.inner_node[at(i)];
+      ++times[at(node)];
+      for (Index c = model.corner_start[at(node)]; c < model.corner_start[at(node) + 1]; ++c) {
+        EXPECT_TRUE(patch.elements.contains(model.corner[at(c)] / 3));
+      }
+    }
+  }
+  for (const Index node : cut.border_node) {
+    ++times[at(node)];
+  }
+  EXPECT_EQ(std::ranges::count(times, 1), model.node_count());
+  EXPECT_EQ(cut.body_border[1].size(), 0);
+}
+
+TEST(patches, give_every_corner_of_the_border_a_place_in_the_order_of_its_node) {
+  const model::Model model = two_plates(50);
+  const Patches cut(model);
+  std::vector<Index> corner_at(at(cut.border_start.back()), no_index);
+  for (const Patch& patch : cut.patches) {
+    for (Index i = patch.shared.begin; i < patch.shared.end; ++i) {
+      const SharedCorner& shared = cut.shared_corner[at(i)];
+      EXPECT_TRUE(patch.elements.contains(shared.corner / 3));
+      EXPECT_EQ(corner_at[at(shared.place)], no_index);
+      corner_at[at(shared.place)] = shared.corner;
+    }
+  }
+  for (std::size_t b = 0; b < cut.border_node.size(); ++b) {
+    const Index first = model.corner_start[at(cut.border_node[b])];
+    for (Index i = cut.border_start[b]; i < cut.border_start[b + 1]; ++i) {
+      EXPECT_EQ(corner_at[at(i)], model.corner[at(first + i - cut.border_start[b])]);
+    }
+  }
+}
+
+/// Whatever order a mesh file has its triangles in, few nodes lie on borders.
+TEST(mesh_order, makes_patches_compact) {
+  const model::Model model = two_plates(100);
+  const Patches cut(model);
+  // Squares of 16 cells a side would have an eighth of their nodes on borders.
+  EXPECT_LT(static_cast<double>(cut.border_node.size()), 0.2 * model.node_count());
+}
+
+TEST(mesh_order, is_a_permutation_that_leaves_small_bodies_as_they_are) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (const Index count : {1, 512, 513, 5000}) {
+    std::vector<Vec3d> position;
+    std::vector<model::Triangle> triangle;
+    std::vector<Index> order;
+    for (Index t = 0; t < count; ++t) {
+      // Many at the same place, which a cut by place alone could not tell apart.
+      const Vec3d place = t % 2 == 0 ? Vec3d{} : Vec3d{unit(random), unit(random), unit(random)};
+      position.insert(position.end(), 3, place);
+      triangle.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+      order.push_back(t);
+    }
+    const std::vector<Index> before = order;
+    model::order_by_place(position, triangle, order);
+    EXPECT_EQ(order == before, count <= model::patch_elements);
+    std::ranges::sort(order);
+    EXPECT_EQ(order, before);
+  }
+}
+
+TEST(mesh_order, leaves_the_user_his_numbers) {
+  const model::Model model = two_plates(50);
+  std::set<std::int64_t> labels;
+  for (Index e = 0; e < model.bodies[0].elements.size(); ++e) {
+    labels.insert(model.element_label[at(e)]);
+    // Triangles of a plate: two a cell, cells row by row.
+    const std::int64_t cell = model.element_label[at(e)] / 2;
+    const Vec3d& corner = model.reference_position[at(model.triangle[at(e)][0])];
+    EXPECT_NEAR(corner.x, (static_cast<double>(cell % 50) + 0.5) / 50.0, 0.011);
+    EXPECT_NEAR(corner.y, (static_cast<double>(cell / 50) + 0.5) / 50.0, 0.011);
+  }
+  EXPECT_EQ(labels.size(), 5000U);
+}
+
+/// Velocities that are not finite are told, at the end of the step or in the middle of the next, by every kernel.
+TEST(node_kernels, tell_what_is_not_finite_and_when) {
+  const model::Model model = two_plates(3);
+  for (const KernelChoice choice :
+       {KernelChoice::scalar, KernelChoice::baseline, KernelChoice::avx2, KernelChoice::avx512}) {
+    const SelectedKernel kernel = select_element_kernel(choice);
+    if (kernel.elements == nullptr) {
+      continue;
+    }
+    SCOPED_TRACE(kernel.name);
+    const Workspace workspace(model, kernel);
+    const auto run = [&](double force, bool go_on) {
+      model::State state = model::initial_state(model);
+      std::vector<CornerForce> corner_force(3 * at(model.element_count()));
+      corner_force[at(model.corner[at(model.corner_start[2])])].moment.z = force;
+      std::vector<Index> nodes{0, 1, 2, 3};
+      const NodeKernelArguments arguments{corner_force.data(),
+                                          model.corner.data(),
+                                          model.corner_start.data(),
+                                          0,
+                                          nullptr,
+                                          workspace.inverse_inertia.data(),
+                                          state.motion.data(),
+                                          state.acceleration.data(),
+                                          1.0e-3,
+                                          2.0e-3,
+                                          go_on};
+      return kernel.nodes(arguments, nodes.data(), 0, 4);
+    };
+    const double inertia = model.inertia[2];
+    // A rate whose square is nearly the largest number: half the step still has one, both halves have not.
+    const double nearly = 1.2e154 / 1.0e-3 * inertia;
+    EXPECT_TRUE(run(nearly, true).closing_finite);
+    EXPECT_FALSE(run(nearly, true).opening_finite);
+    EXPECT_TRUE(run(nearly, false).closing_finite);
+    EXPECT_FALSE(run(2.0 * nearly, false).closing_finite);
+    EXPECT_FALSE(run(HUGE_VAL, true).closing_finite);
+    EXPECT_TRUE(run(1.0, true).opening_finite);
+  }
+}
+
+}  // namespace
+}  // namespace fexp::solve

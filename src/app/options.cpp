@@ -37,11 +37,9 @@ const std::map<std::string, cluster::PlacementRule>& placement_rules() {
 }
 
 void add_placement_option(CLI::App& options, cluster::PlacementRule& rule) {
-  options
-      .add_option("--placement", rule,
-                  "Where islands go on several machines: elements (to the machine with the fewest, when islands merge "
-                  "or split), or cost (by measured cost and speed); the results are the same")
-      ->transform(CLI::CheckedTransformer(placement_rules()))
+  add_choice(options, "--placement", rule, placement_rules(),
+             "Where islands go on several machines: elements (to the machine with the fewest, when islands merge or "
+             "split), or cost (by measured cost and speed); the results are the same")
       ->option_text("RULE");
 }
 

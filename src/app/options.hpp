@@ -18,6 +18,26 @@ void add_json_option(CLI::App& options, bool& json, const char* meaning);
 
 /// Wall time between checkpoints on the disk [s].
 void add_checkpoint_option(CLI::App& options, double& seconds);
+/// An option whose value is one of a few names.
+template <class Value>
+CLI::Option* add_choice(CLI::App& options, const std::string& name, Value& value,
+                        const std::map<std::string, Value>& choices, const std::string& meaning) {
+  return options.add_option_function<std::string>(
+      name,
+      [&value, choices, name](const std::string& text) {
+        const auto found = choices.find(text);
+        if (found == choices.end()) {
+          std::string names;
+          for (const auto& [choice, ignored] : choices) {
+            names += (names.empty() ? "" : ", ") + choice;
+          }
+          throw CLI::ValidationError(name, "\"" + text + "\" is not known; accepted: " + names);
+        }
+        value = found->second;
+      },
+      meaning);
+}
+
 /// Where islands go on several machines.
 void add_placement_option(CLI::App& options, cluster::PlacementRule& rule);
 /// The rules by the names that the option knows them by.

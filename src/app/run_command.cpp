@@ -71,9 +71,8 @@ std::function<ExitCode()> declare(CLI::App& app) {
                                                     {"baseline", KernelChoice::baseline},
                                                     {"avx2", KernelChoice::avx2},
                                                     {"avx512", KernelChoice::avx512}};
-  app.add_option("--kernel", options->drive.kernel,
-                 "Element kernel: auto, scalar, baseline, avx2 or avx512; all give the same bits (for tests)")
-      ->transform(CLI::CheckedTransformer(kernels))
+  add_choice(app, "--kernel", options->drive.kernel, kernels,
+             "Element kernel: auto, scalar, baseline, avx2 or avx512; all give the same bits (for tests)")
       ->option_text("NAME");
   return [options] { return run(*options); };
 }

@@ -61,7 +61,9 @@ class WrongInput(program.Case):
         self.expect_refused(["run", name, "--threads", "0"], "--threads", "1 to")
         self.expect_refused(["run", name, "--threads", "two"], "--threads", "two")
         self.expect_refused(["run", name, "--hash-every", "0"], "--hash-every")
-        self.expect_refused(["run", name, "--kernel", "mmx"], "--kernel", "mmx")
+        self.expect_refused(["run", name, "--kernel", "mmx"], "--kernel", "mmx",
+                            "accepted: auto, avx2, avx512, baseline, scalar")
+        self.expect_refused(["run", name, "--placement", "best"], "--placement", "best", "accepted: cost, elements")
         self.expect_refused(["run"], "DECK")
         self.expect_refused([], "--help")
 

@@ -105,14 +105,14 @@ double NodeWatch::depth_limit(Index element) const {
   return size;
 }
 
-NodeWatch::Watched NodeWatch::measured(Index element) const {
+NodeWatch::Watched NodeWatch::measured(Index element) {
   Watched w;
   w.element = element;
   w.closest = closest_on(model_, now_, element, point_);
   w.distance = std::sqrt(w.closest.distance2);
-  w.normal = unit_normal(model_, now_, element);
+  w.normal = normals_(element);
   w.rim = is_on_rim(model_, element, w.closest.feature);
-  w.view = view_of(model_, now_, element, w.closest);
+  w.view = view_of(model_, normals_, element, w.closest);
   w.acts = true;
   double least = w.closest.distance2;
   Index first = element;
@@ -159,7 +159,7 @@ int NodeWatch::inherited_side(Index element) const {
 
 /// Whether the node was behind the element before this step, or may have come through it in the step. Otherwise it has
 /// gone round an edge: the element was remembered for the sake of a closer neighbour.
-bool NodeWatch::could_come_through(const Watched& w, int home) const {
+bool NodeWatch::could_come_through(const Watched& w, int home) {
   const auto& t = model_.triangle[at(w.element)];
   Vec3d way = point_ - before_(node_);
   for (std::size_t a = 0; a < 3; ++a) {
@@ -169,7 +169,7 @@ bool NodeWatch::could_come_through(const Watched& w, int home) const {
     return true;
   }
   const auto closest = closest_on(model_, before_, w.element, before_(node_));
-  const View view = view_of(model_, before_, w.element, closest);
+  const View view = view_of(model_, normals_before_, w.element, closest);
   return view.agreed && view.side != home;
 }
 
@@ -185,7 +185,7 @@ void NodeWatch::decide_sides(std::span<const model::ContactSide> memory) {
       w.side = inherited_side(w.element);
     }
     if (w.side == 0) {
-      w.side = view_of(model_, before_, w.element, closest_on(model_, before_, w.element, before_(node_))).side;
+      w.side = view_of(model_, normals_before_, w.element, closest_on(model_, before_, w.element, before_(node_))).side;
     }
   }
   // Where a neighbour is closer, its side is what counts, and so on to the closest of all: a node that goes round a rim

@@ -34,7 +34,12 @@ class NodeWatch {
   /// Where `before` is `now`, nothing has moved since the sides were remembered. They are then taken as they are, so
   /// that a state gives the same forces and sides however often it is looked at.
   NodeWatch(const model::Model& model, Positions now, Positions before)
-      : model_(model), now_(now), before_(before), still_(before.back == now.back) {}
+      : model_(model),
+        now_(now),
+        before_(before),
+        normals_(model, now),
+        normals_before_(model, before),
+        still_(before.back == now.back) {}
 
   /// Looks at `node`, which has `candidates` and `memory` (sides of this node's pairs at the last step; both ascending
   /// in element). Appends what is remembered now to `remembered` and pairs with a force to `active`.
@@ -67,8 +72,8 @@ class NodeWatch {
   void push(std::vector<ActivePair>& active) const;
 
   [[nodiscard]] double depth_limit(Index element) const;
-  [[nodiscard]] Watched measured(Index element) const;
-  [[nodiscard]] bool could_come_through(const Watched& watched, int home) const;
+  [[nodiscard]] Watched measured(Index element);
+  [[nodiscard]] bool could_come_through(const Watched& watched, int home);
   [[nodiscard]] int inherited_side(Index element) const;
   [[nodiscard]] double contact_distance(const Watched& watched) const;
   [[nodiscard]] double stiffness(const Watched& watched) const;
@@ -79,6 +84,8 @@ class NodeWatch {
   const model::Model& model_;
   Positions now_;
   Positions before_;
+  Normals normals_;
+  Normals normals_before_;
   bool still_{};
   Index node_{};
   Vec3d point_;

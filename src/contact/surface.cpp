@@ -21,8 +21,9 @@ bool has_free_edge_at(const model::Model& model, Index element, Index node) noex
 }
 
 /// Steepest view from the elements at that edge of the closest corner which leads least away from the point.
-double view_at_outermost_edge(const model::Model& model, const Positions& x, Index element,
+double view_at_outermost_edge(const model::Model& model, Normals& normals, Index element,
                               const physics::ClosestPoint& closest) noexcept {
+  const Positions& x = normals.positions();
   const Index node = model.triangle[at(element)][physics::number_of(closest.feature)];
   double outermost = -HUGE_VAL, steepest = 0.0;
   const auto look_along_edges = [&](Index seen) {
@@ -37,7 +38,7 @@ double view_at_outermost_edge(const model::Model& model, const Positions& x, Ind
         steepest = 0.0;
       }
       if (reach == outermost) {
-        const double view = dot(closest.offset, unit_normal(model, x, seen));
+        const double view = dot(closest.offset, normals(seen));
         steepest = std::abs(view) > std::abs(steepest) ? view : steepest;
       }
     }
@@ -62,18 +63,11 @@ bool is_on_rim(const model::Model& model, Index element, Feature feature) noexce
   return rim;
 }
 
-Vec3d unit_normal(const model::Model& model, const Positions& x, Index element) noexcept {
-  const auto& t = model.triangle[at(element)];
-  const Vec3d origin = x(t[0]);
-  const Vec3d normal = cross(x(t[1]) - origin, x(t[2]) - origin);
-  return (1.0 / norm(normal)) * normal;
-}
-
-View view_of(const model::Model& model, const Positions& x, Index element,
+View view_of(const model::Model& model, Normals& normals, Index element,
              const physics::ClosestPoint& closest) noexcept {
   double steepest = 0.0, lowest = HUGE_VAL, highest = -HUGE_VAL;
   const auto look_from = [&](Index seen) {
-    const double view = dot(closest.offset, unit_normal(model, x, seen));
+    const double view = dot(closest.offset, normals(seen));
     steepest = std::abs(view) > std::abs(steepest) ? view : steepest;
     lowest = view < lowest ? view : lowest;
     highest = view > highest ? view : highest;
@@ -81,7 +75,7 @@ View view_of(const model::Model& model, const Positions& x, Index element,
   look_from(element);
   for_each_sharing(model, element, closest.feature, look_from);
   if (physics::is_corner(closest.feature)) {
-    steepest = view_at_outermost_edge(model, x, element, closest);
+    steepest = view_at_outermost_edge(model, normals, element, closest);
   }
   return {steepest < 0.0 ? -1 : 1, lowest >= 0.0 || highest <= 0.0};
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "model/model.hpp"
 #include "model/state.hpp"
 #include "physics/closest_point.hpp"
@@ -47,6 +49,40 @@ void for_each_sharing(const model::Model& model, Index element, physics::Feature
 /// Whether the feature lies on the rim of an open surface, where a node may go round from one side to the other.
 [[nodiscard]] bool is_on_rim(const model::Model& model, Index element, physics::Feature feature) noexcept;
 
+/// Unit normals of elements at given positions. Each is asked for again and again by the pairs near it, and takes a
+/// root and a division, so that some are kept.
+class Normals {
+ public:
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): `kept_` is read only where `element_` says so
+  Normals(const model::Model& model, const Positions& positions) noexcept : model_(model), positions_(positions) {
+    element_.fill(no_index);
+  }
+
+  [[nodiscard]] const Positions& positions() const noexcept { return positions_; }
+
+  [[nodiscard]] Vec3d operator()(Index element) noexcept {
+    const std::size_t place = at(element) % places;
+    std::array<double, 3>& kept = kept_[place];
+    if (element_[place] != element) {
+      element_[place] = element;
+      const auto& t = model_.triangle[at(element)];
+      const Vec3d origin = positions_(t[0]);
+      const Vec3d normal = cross(positions_(t[1]) - origin, positions_(t[2]) - origin);
+      const Vec3d unit = (1.0 / norm(normal)) * normal;
+      kept = {unit.x, unit.y, unit.z};
+    }
+    return {kept[0], kept[1], kept[2]};
+  }
+
+ private:
+  static constexpr std::size_t places = 128;
+
+  const model::Model& model_;
+  Positions positions_;
+  std::array<Index, places> element_;
+  std::array<std::array<double, 3>, places> kept_;
+};
+
 /// How a point sees the surface round its closest point.
 struct View {
   int side{};     ///< +1 where the normals point, -1 behind
@@ -56,11 +92,8 @@ struct View {
 /// At an edge the element with the steepest view says which side it is. At a corner that edge does which leads least
 /// away from the point, with its elements: seen along the line from the point through the corner it is the outermost
 /// one, which is convex. So the side is right at every fold and every spike.
-[[nodiscard]] View view_of(const model::Model& model, const Positions& x, Index element,
+[[nodiscard]] View view_of(const model::Model& model, Normals& normals, Index element,
                            const physics::ClosestPoint& closest) noexcept;
-
-/// Unit normal of an element.
-[[nodiscard]] Vec3d unit_normal(const model::Model& model, const Positions& x, Index element) noexcept;
 
 /// Whether the deck lets the node touch the element: their bodies may, they are not both barriers, and the node is no
 /// corner of the element.

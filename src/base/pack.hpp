@@ -107,6 +107,13 @@ struct BasicPack {
     }
     return r;
   }
+  friend bool all_equal(BasicPack a, BasicPack b) noexcept {
+    bool equal = true;
+    for (int i = 0; i < W; ++i) {
+      equal = equal && a.v[i] == b.v[i];
+    }
+    return equal;
+  }
   /// Lane-wise smaller value; both operands must be free of NaN.
   friend BasicPack minimum(BasicPack a, BasicPack b) noexcept { return BasicPack(a.v < b.v ? a.v : b.v); }
   /// Lane-wise larger value; both operands must be free of NaN.
@@ -214,6 +221,7 @@ template <int W>
 using Pack = BasicPack<W, compiled_instruction_set>;
 
 [[nodiscard]] inline double square_root(double a) noexcept { return std::sqrt(a); }
+[[nodiscard]] inline bool all_equal(double a, double b) noexcept { return a == b; }
 [[nodiscard]] inline double minimum(double a, double b) noexcept { return a < b ? a : b; }
 [[nodiscard]] inline double maximum(double a, double b) noexcept { return a > b ? a : b; }
 

@@ -49,7 +49,7 @@ class Ranks(cluster.Case):
         start = time.monotonic()
         self.wait_for_world(2, process)
         self.assertLess(time.monotonic() - start, 12.0)
-        self.assertEqual(self.machines_of_world(2), ["c1", "c3"])
+        self.assertEqual(self.machines_of_world(2), ["c1", "c3"], self.log())
         self.assertFalse(cluster.is_alive(frozen))
         self.assertEqual(self.states()["c2"], "left out")
         self.assertIn("c2 is left out for 10 s: its worker does not run", self.log())

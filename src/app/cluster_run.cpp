@@ -182,14 +182,20 @@ ExitCode coordinate(const io::RunDirectory& directory, const ClusterRecord& reco
   settings.signal = [] { return SignalWatch::received(); };
   coordinator::FinishRun end;
   std::string summary;
+  ClusterRecord last;
   {
     coordinator::Coordinator coordinator(std::move(settings));
     voice.say(fmt::format("the run is in {}; see \"fexp cluster status\"", directory.path().string()));
     end = coordinator.run();
     summary = coordinator.summary();
+    last = coordinator.record();
   }
-  const ClusterRecord last = coordinator::read_record(directory.path());
-  write_thread_table(directory, last);
+  try {
+    write_thread_table(directory, last);
+  } catch (const io::OutputError& error) {
+    // A table that is missing makes the run no less complete.
+    voice.say(error.what());
+  }
   if (!quiet && !json) {
     print_out(summary + thread_table(last));
   }

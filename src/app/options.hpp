@@ -18,6 +18,7 @@ void add_json_option(CLI::App& options, bool& json, const char* meaning);
 
 /// Wall time between checkpoints on the disk [s].
 void add_checkpoint_option(CLI::App& options, double& seconds);
+
 /// An option whose value is one of a few names.
 template <class Value>
 CLI::Option* add_choice(CLI::App& options, const std::string& name, Value& value,

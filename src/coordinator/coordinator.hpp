@@ -43,6 +43,8 @@ class Coordinator {
   [[nodiscard]] FinishRun run();
   /// What the last world had to say of the run, for the user; empty when it did not come to that.
   [[nodiscard]] const std::string& summary() const noexcept { return summary_; }
+  /// Of the run as it is now, whether it could be written or not.
+  [[nodiscard]] const ClusterRecord& record() const noexcept { return settings_.record; }
 
  private:
   // Events

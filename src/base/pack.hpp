@@ -187,32 +187,17 @@ inline void load_rows(const std::array<const double*, 1>& rows, std::array<doubl
   std::memcpy(values.data(), rows[0], sizeof(values));
 }
 
-/// Writes lane k of `Count` packs as `Count` consecutive doubles to rows + k x stride, for the first `used` lanes.
-template <std::size_t Count, int W, InstructionSet Set>
-inline void store_rows(const std::array<BasicPack<W, Set>, Count>& packs, double* rows, std::size_t stride,
-                       std::size_t used) noexcept {
+/// Lane k of `Count` packs becomes row k, filled up with zeros to whole packs: rows[piece][k].
+template <std::size_t Count, int W, InstructionSet Set, std::size_t Pieces>
+inline void to_rows(const std::array<BasicPack<W, Set>, Count>& packs,
+                    std::array<std::array<typename BasicPack<W, Set>::Native, std::size_t(W)>, Pieces>& rows) noexcept {
   constexpr auto width = static_cast<std::size_t>(W);
-  constexpr std::size_t whole = Count / width * width;
-  for (std::size_t first = 0; first < whole; first += width) {
-    std::array<typename BasicPack<W, Set>::Native, width> square;
+  static_assert(Pieces == (Count + width - 1) / width);
+  for (std::size_t piece = 0; piece < Pieces; ++piece) {
     for (std::size_t i = 0; i < width; ++i) {
-      square[i] = packs[first + i].v;
+      rows[piece][i] = piece * width + i < Count ? packs[piece * width + i].v : BasicPack<W, Set>::broadcast(0.0);
     }
-    detail::transpose<Set>(square);
-    for (std::size_t lane = 0; lane < used; ++lane) {
-      std::memcpy(rows + lane * stride + first, &square[lane], sizeof(square[lane]));
-    }
-  }
-  for (std::size_t i = whole; i < Count; ++i) {
-    for (std::size_t lane = 0; lane < used; ++lane) {
-      rows[lane * stride + i] = packs[i].v[lane];
-    }
-  }
-}
-template <std::size_t Count>
-inline void store_rows(const std::array<double, Count>& values, double* rows, std::size_t, std::size_t used) noexcept {
-  if (used > 0) {
-    std::memcpy(rows, values.data(), sizeof(values));
+    detail::transpose<Set>(rows[piece]);
   }
 }
 

@@ -8,8 +8,8 @@
 
 namespace fexp::model {
 
-/// Most elements of a patch, a compact piece of a body whose forces stay in the cache while they are summed: corner
-/// forces of so many elements take 72 KiB.
+/// Most elements of a patch, a compact piece of a body whose forces stay in the cache while they are summed: those on
+/// its nodes, about half as many as elements, take 16 KiB.
 inline constexpr Index patch_elements = 512;
 
 /// Into how many patches consecutive blocks are cut.

@@ -144,16 +144,16 @@ FEXP_INLINE void turn_strain(const T& angle, T& xx, T& yy, T& xy) noexcept {
   yy = yy - change;
 }
 
-/// Strain increments dt x rate for corner velocities v and rotation rates w, in the frame of the mid-step geometry.
+/// Strain increments dt x rate for velocities v12, v13 of corners 2 and 3 relative to corner 1 and rotation rates w, in
+/// the frame of the mid-step geometry.
 template <class T>
-[[nodiscard]] FEXP_INLINE ShellIncrement<T> strain_increment(const TriangleFrame<T>& f, const std::array<Vec3<T>, 3>& v,
-                                                             const std::array<Vec3<T>, 3>& w, const T& dt) noexcept {
+[[nodiscard]] FEXP_INLINE ShellIncrement<T> strain_increment(const TriangleFrame<T>& f, const Vec3<T>& v12,
+                                                             const Vec3<T>& v13, const std::array<Vec3<T>, 3>& w,
+                                                             const T& dt) noexcept {
   const ShapeDerivatives<T> d(f);
   const AssumedShear<T> shear(f, d);
   // Projections of rates on these are increments.
   const Vec3<T> e1 = dt * f.e1, e2 = dt * f.e2, e3 = dt * f.e3;
-  const Vec3<T> v12 = v[1] - v[0];
-  const Vec3<T> v13 = v[2] - v[0];
   const T u2 = dot(v12, e1), v2 = dot(v12, e2), w2 = dot(v12, e3);
   const T u3 = dot(v13, e1), v3 = dot(v13, e2), w3 = dot(v13, e3);
   std::array<T, 3> tx, ty, tz;

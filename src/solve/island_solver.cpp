@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "base/pack.hpp"
-#include "model/patch_cut.hpp"
 #include "parallel/parallel.hpp"
 #include "solve/loads.hpp"
 
@@ -300,32 +299,29 @@ void IslandSolver::advance_pieces(const Step& step, Pass pass) {
   parallel::for_each(static_cast<Index>(patch_pieces_.size()), grain(patch_pieces_.size(), elements_, task_elements),
                      [&](Index i) { advance_patch(step, pass, at(patch_pieces_[at(i)])); });
   NodeKernelArguments border = node_arguments(step, pass);
-  border.corner_force = step.workspace.border_force.data();
-  border.corner_start = step.workspace.patches.border_start.data();
+  border.force = step.workspace.border_force.data();
+  border.force_start = step.workspace.patches.border_start.data();
   parallel::for_each(static_cast<Index>(border_pieces_.size()), 1,
                      [&](Index i) { advance_nodes(step, pass, border, at(border_pieces_[at(i)])); });
 }
 
 void IslandSolver::advance_patch(const Step& step, Pass pass, std::size_t piece) {
-  // Bytes, because setting all of them to zero first would cost as much as a twentieth of the elements.
-  alignas(64) std::array<std::byte, std::size_t{3} * model::patch_elements * sizeof(CornerForce)> storage;
-  auto* const corner_force = reinterpret_cast<CornerForce*>(storage.data());
+  // Bytes, because setting all of them to zero would cost more than those that are used.
+  alignas(NodeForce) std::array<std::byte, at(most_patch_forces) * sizeof(NodeForce)> storage;
+  auto* const force = reinterpret_cast<NodeForce*>(storage.data());
   const Patches& patches = step.workspace.patches;
   const Patch& patch = patches.patches[at(pieces_[piece].patch)];
+  std::fill_n(force, patch.force_count(), NodeForce{});
   step.workspace.kernel.elements(
       {step.state.motion.data(), step.model.triangle.data(), step.model.blocks.data(), step.workspace.sections.data(),
-       step.state.history.data(), corner_force, patch.elements.begin, step.dt},
+       step.state.history.data(), patches.corner.data(), force, step.dt},
       patch.blocks.begin, patch.blocks.end);
-  const Index first_corner = 3 * patch.elements.begin;
-  for (Index i = patch.shared.begin; i < patch.shared.end; ++i) {
-    const SharedCorner& shared = patches.shared_corner[at(i)];
-    step.workspace.border_force[at(shared.place)] = corner_force[shared.corner - first_corner];
+  const NodeForce* share = force + patch.nodes.size();
+  for (Index i = patch.border.begin; i < patch.border.end; ++i) {
+    step.workspace.border_force[at(patches.border_place[at(i)])] = *share++;
   }
   NodeKernelArguments inner = node_arguments(step, pass);
-  inner.corner_force = corner_force;
-  inner.corner = step.model.corner.data();
-  inner.corner_start = step.model.corner_start.data();
-  inner.first_corner = first_corner;
+  inner.force = force;
   advance_nodes(step, pass, inner, piece);
 }
 
@@ -373,12 +369,11 @@ void IslandSolver::accelerate(const Step& step, const NodeKernelArguments& k, st
   }
   for (Index i = piece.nodes.begin; i < piece.nodes.end; ++i) {
     const Index n = piece.node[i];
-    const Index row = k.corner != nullptr ? n : i;
     Vec3d internal, internal_moment;
-    for (Index c = k.corner_start[row]; c < k.corner_start[row + 1]; ++c) {
-      const CornerForce& corner = k.corner_force[k.corner != nullptr ? k.corner[c] - k.first_corner : c];
-      internal += corner.force;
-      internal_moment += corner.moment;
+    const Index force_end = k.force_start == nullptr ? i - piece.nodes.begin + 1 : k.force_start[i + 1];
+    for (Index f = k.force_start == nullptr ? i - piece.nodes.begin : k.force_start[i]; f < force_end; ++f) {
+      internal += k.force[f].force;
+      internal_moment += k.force[f].moment;
     }
     Vec3d force = (k.contact_force != nullptr ? k.contact_force[n] : Vec3d{}) - internal;
     Vec3d moment = Vec3d{} - internal_moment;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string_view>
 
 #include "base/index.hpp"
@@ -12,8 +13,8 @@
 
 namespace fexp::solve {
 
-/// Internal force and moment that one corner of an element exerts on its node (to be subtracted).
-struct CornerForce {
+/// Internal force and moment that elements exert on a node (to be subtracted), on a cache line of its own.
+struct alignas(64) NodeForce {
   Vec3d force;   ///< [force]
   Vec3d moment;  ///< [force*length]
 };
@@ -26,12 +27,14 @@ struct ElementKernelArguments {
   const model::ElementBlock* blocks{};        // [blocks]
   const physics::ShellStiffness* sections{};  // [sections]
   double* history{};                          // [blocks][element_rows][block_lanes]
-  CornerForce* corner_force{};                // [elements][3], from first_element on
-  Index first_element{};
+  /// Which of `force` the corners of a block's lanes add to, [blocks][block_lanes][3]; lanes without an element have
+  /// one that nobody reads.
+  const std::uint16_t* place{};
+  NodeForce* force{};
   double dt{};  ///< Step just taken [time]; 0 evaluates forces of the present state.
 };
 
-/// Updates resultants and writes corner forces of blocks [begin, end).
+/// Updates resultants of blocks [begin, end) and adds their corner forces, element by element.
 using ElementKernel = void (*)(const ElementKernelArguments& arguments, Index begin, Index end) noexcept;
 
 /// What divides force and moment of a node.
@@ -42,12 +45,10 @@ struct InverseInertia {
 
 /// What the node kernels read and write.
 struct NodeKernelArguments {
-  const CornerForce* corner_force{};
-  /// Corners of node n are corner[corner_start[n]] and so on, less first_corner. Without `corner`, the nodes' forces
-  /// lie side by side: those of the i-th node begin at corner_start[i].
-  const Index* corner{};
-  const Index* corner_start{};
-  Index first_corner{};
+  /// Forces on the i-th node are force[force_start[i]] and so on; without `force_start` there is one for each, and that
+  /// of the first node is force[0].
+  const NodeForce* force{};
+  const Index* force_start{};
   const Vec3d* contact_force{};             // [nodes]; none: nothing touches
   const InverseInertia* inverse_inertia{};  // [nodes]
   model::NodeMotion* motion{};              // [nodes]
@@ -63,7 +64,7 @@ struct NodeKernelReport {
   bool opening_finite{true};  ///< Velocities at the middle of the next step
 };
 
-/// Sums corner forces at nodes[begin, end), accelerates them and takes the closing half step; where go_on also the
+/// Sums the forces at nodes[begin, end), accelerates them and takes the closing half step; where go_on also the
 /// opening half of the next step and its motion.
 using NodeKernel = NodeKernelReport (*)(const NodeKernelArguments& arguments, const Index* nodes, Index begin,
                                         Index end) noexcept;

@@ -32,7 +32,7 @@ struct Workspace {
   SelectedKernel kernel;
   std::vector<physics::ShellStiffness> sections;  // [sections]
   Patches patches;
-  AlignedVector<CornerForce> border_force;      // [corners of border nodes]
+  AlignedVector<NodeForce> border_force;        // [shares of border nodes]
   std::vector<InverseInertia> inverse_inertia;  // [nodes]
   contact::NodeContact contact;                 // At the last evaluated positions
   /// Loads and gravity at the last evaluated instant, shape [nodes]; empty when the model has none.

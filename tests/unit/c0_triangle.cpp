@@ -143,7 +143,7 @@ TEST(corner_forces, do_the_work_of_the_resultants_on_any_motion) {
     }
     // A step too short to turn anything: increments over it are rates.
     const double dt = 0x1p-60;
-    const ShellIncrement<double> e = strain_increment(frame, v, w, dt);
+    const ShellIncrement<double> e = strain_increment(frame, v[1] - v[0], v[2] - v[0], w, dt);
     const double density = r.nxx * e.exx + r.nyy * e.eyy + r.nxy * e.gxy + r.mxx * e.kxx + r.myy * e.kyy +
                            r.mxy * e.kxy + r.qxz * e.gxz + r.qyz * e.gyz;
     double drill = 0.0;

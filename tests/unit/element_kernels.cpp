@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <vector>
 
+#include "base/aligned_vector.hpp"
+#include "solve/patches.hpp"
 #include "support/models.hpp"
 
 namespace fexp::solve {
@@ -15,7 +19,8 @@ namespace {
 
 /// A plate whose element count fills no block, moving and stressed at random.
 struct RandomPlate {
-  RandomPlate() : model(make()), state(model::initial_state(model)), corner_force(3 * model.triangle.size()) {
+  RandomPlate()
+      : model(make()), state(model::initial_state(model)), patches(model), force(at(patches.patches[0].force_count())) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     const auto vector = [&](double size) {
@@ -41,21 +46,27 @@ struct RandomPlate {
   }
 
   void step(ElementKernel kernel, double dt) {
+    std::ranges::fill(force, NodeForce{});
     kernel({state.motion.data(), model.triangle.data(), model.blocks.data(), sections.data(), state.history.data(),
-            corner_force.data(), 0, dt},
+            patches.corner.data(), force.data(), dt},
            0, model.block_count());
   }
 
   model::Model model;
   model::State state;
   std::vector<physics::ShellStiffness> sections;
-  std::vector<CornerForce> corner_force;
+  Patches patches;
+  AlignedVector<NodeForce> force;
 };
 
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
-/// Elements whose history or corner forces differ in any bit.
-int different_elements(const RandomPlate& a, const RandomPlate& b) {
+bool same_bits(const Vec3d& a, const Vec3d& b) {
+  return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
+}
+
+/// Elements whose history and nodes whose forces differ in any bit.
+int differences(const RandomPlate& a, const RandomPlate& b) {
   int different = 0;
   for (Index e = 0; e < a.model.element_count(); ++e) {
     bool same = true;
@@ -63,13 +74,11 @@ int different_elements(const RandomPlate& a, const RandomPlate& b) {
       same = same && same_bits(model::element_value(a.model, a.state, e, static_cast<model::ElementRow>(row)),
                                model::element_value(b.model, b.state, e, static_cast<model::ElementRow>(row)));
     }
-    for (std::size_t c = 0; c < 3; ++c) {
-      const CornerForce &p = a.corner_force[3 * at(e) + c], &q = b.corner_force[3 * at(e) + c];
-      for (const auto& [u, v] : {std::pair{p.force, q.force}, std::pair{p.moment, q.moment}}) {
-        same = same && same_bits(u.x, v.x) && same_bits(u.y, v.y) && same_bits(u.z, v.z);
-      }
-    }
     different += same ? 0 : 1;
+  }
+  for (std::size_t n = 0; n < at(a.model.node_count()); ++n) {
+    different +=
+        same_bits(a.force[n].force, b.force[n].force) && same_bits(a.force[n].moment, b.force[n].moment) ? 0 : 1;
   }
   return different;
 }
@@ -90,10 +99,46 @@ TEST(element_kernels, of_every_width_give_the_bits_of_the_scalar_one) {
     for (int i = 0; i < 3; ++i) {
       packed.step(kernel.elements, 1e-5);
     }
-    EXPECT_EQ(different_elements(scalar, packed), 0) << kernel.name;
+    EXPECT_EQ(differences(scalar, packed), 0) << kernel.name;
     ++compared;
   }
   EXPECT_GE(compared, 1);
+}
+
+/// Forces of several elements on a node are those of each alone, added in their order.
+TEST(element_kernels, add_corner_forces_in_the_order_of_elements) {
+  for (const KernelChoice choice :
+       {KernelChoice::scalar, KernelChoice::baseline, KernelChoice::avx2, KernelChoice::avx512}) {
+    const SelectedKernel kernel = select_element_kernel(choice);
+    if (kernel.elements == nullptr) {
+      continue;
+    }
+    SCOPED_TRACE(kernel.name);
+    RandomPlate all;
+    const RandomPlate before = all;
+    all.step(kernel.elements, 1e-5);
+    // A place of its own for every corner: no two are added.
+    const auto corners = 3 * at(model::block_lanes) * at(all.model.block_count());
+    std::vector<std::uint16_t> place(corners);
+    std::iota(place.begin(), place.end(), std::uint16_t{0});
+    AlignedVector<NodeForce> corner(corners);
+    model::State state = before.state;
+    kernel.elements({state.motion.data(), all.model.triangle.data(), all.model.blocks.data(), all.sections.data(),
+                     state.history.data(), place.data(), corner.data(), 1e-5},
+                    0, all.model.block_count());
+    std::vector<NodeForce> sum(at(all.model.node_count()));
+    for (Index e = 0; e < all.model.element_count(); ++e) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        NodeForce& node = sum[at(all.model.triangle[at(e)][c])];
+        node.force += corner[3 * at(e) + c].force;
+        node.moment += corner[3 * at(e) + c].moment;
+      }
+    }
+    for (std::size_t n = 0; n < sum.size(); ++n) {
+      EXPECT_TRUE(same_bits(all.force[n].force, sum[n].force)) << n;
+      EXPECT_TRUE(same_bits(all.force[n].moment, sum[n].moment)) << n;
+    }
+  }
 }
 
 TEST(element_kernels, leave_the_state_alone_when_no_time_passes) {
@@ -101,7 +146,7 @@ TEST(element_kernels, leave_the_state_alone_when_no_time_passes) {
   moved.step(select_element_kernel(KernelChoice::automatic).elements, 1e-5);
   RandomPlate still = moved;
   still.step(select_element_kernel(KernelChoice::automatic).elements, 0.0);
-  EXPECT_EQ(different_elements(moved, still), 0);
+  EXPECT_EQ(differences(moved, still), 0);
 }
 
 }  // namespace

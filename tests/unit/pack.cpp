@@ -65,29 +65,29 @@ TYPED_TEST(Packs, store_what_they_loaded_and_change_one_lane_at_a_time) {
   EXPECT_EQ(p.lane(1), 3.0);
 }
 
-TYPED_TEST(Packs, take_rows_into_lanes_and_give_them_back_to_used_rows_only) {
-  constexpr std::size_t count = 19, stride = 23, width = TypeParam::width;
-  std::array<double, stride * width> table{};
+TYPED_TEST(Packs, take_rows_into_lanes_and_give_them_back_filled_up_with_zeros) {
+  constexpr std::size_t count = 19, width = TypeParam::width, pieces = (count + width - 1) / width;
+  std::array<std::array<double, count>, width> table{};
   std::array<const double*, width> rows{};
   for (std::size_t lane = 0; lane < width; ++lane) {
-    rows[lane] = &table[lane * stride];
-    for (std::size_t i = 0; i < stride; ++i) {
-      table[lane * stride + i] = static_cast<double>(100 * lane + i);
+    rows[lane] = table[lane].data();
+    for (std::size_t i = 0; i < count; ++i) {
+      table[lane][i] = static_cast<double>(100 * lane + i);
     }
   }
   std::array<TypeParam, count> packs;
   load_rows(rows, packs);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t lane = 0; lane < width; ++lane) {
-      EXPECT_EQ(packs[i].lane(static_cast<int>(lane)), table[lane * stride + i]) << i << ", lane " << lane;
+      EXPECT_EQ(packs[i].lane(static_cast<int>(lane)), table[lane][i]) << i << ", lane " << lane;
     }
   }
-  for (std::size_t used = 0; used <= width; ++used) {
-    std::array<double, stride * width> back{};
-    store_rows(packs, back.data(), stride, used);
-    for (std::size_t k = 0; k < back.size(); ++k) {
-      const bool written = k % stride < count && k / stride < used;
-      EXPECT_EQ(back[k], written ? table[k] : 0.0) << k << " of " << used << " rows";
+  std::array<std::array<typename TypeParam::Native, width>, pieces> back;
+  to_rows(packs, back);
+  for (std::size_t i = 0; i < pieces * width; ++i) {
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      const double value = TypeParam(back[i / width][lane]).lane(static_cast<int>(i % width));
+      EXPECT_EQ(value, i < count ? table[lane][i] : 0.0) << i << ", lane " << lane;
     }
   }
 }

@@ -63,24 +63,57 @@ TEST(patches, hold_every_node_once_and_all_corners_of_their_inner_nodes) {
   EXPECT_EQ(cut.body_border[1].size(), 0);
 }
 
-TEST(patches, give_every_corner_of_the_border_a_place_in_the_order_of_its_node) {
+TEST(patches, give_every_share_of_the_border_a_place_in_the_order_of_patches) {
   const model::Model model = two_plates(50);
   const Patches cut(model);
-  std::vector<Index> corner_at(at(cut.border_start.back()), no_index);
-  for (const Patch& patch : cut.patches) {
-    for (Index i = patch.shared.begin; i < patch.shared.end; ++i) {
-      const SharedCorner& shared = cut.shared_corner[at(i)];
-      EXPECT_TRUE(patch.elements.contains(shared.corner / 3));
-      EXPECT_EQ(corner_at[at(shared.place)], no_index);
-      corner_at[at(shared.place)] = shared.corner;
+  std::vector<Index> patch_at(at(cut.border_start.back()), no_index);
+  for (std::size_t p = 0; p < cut.patches.size(); ++p) {
+    const IndexRange border = cut.patches[p].border;
+    for (Index i = border.begin; i < border.end; ++i) {
+      EXPECT_EQ(patch_at[at(cut.border_place[at(i)])], no_index);
+      patch_at[at(cut.border_place[at(i)])] = static_cast<Index>(p);
     }
   }
   for (std::size_t b = 0; b < cut.border_node.size(); ++b) {
-    const Index first = model.corner_start[at(cut.border_node[b])];
-    for (Index i = cut.border_start[b]; i < cut.border_start[b + 1]; ++i) {
-      EXPECT_EQ(corner_at[at(i)], model.corner[at(first + i - cut.border_start[b])]);
+    const auto first = patch_at.begin() + cut.border_start[b], last = patch_at.begin() + cut.border_start[b + 1];
+    EXPECT_GE(last - first, 2);
+    EXPECT_TRUE(std::ranges::is_sorted(first, last, std::ranges::less_equal{})) << "node " << cut.border_node[b];
+    EXPECT_NE(*first, no_index);
+  }
+}
+
+/// Every corner leads to the force on its own node, and lanes without an element to the last one.
+TEST(patches, lead_corners_to_their_nodes) {
+  const model::Model model = two_plates(33);
+  const Patches cut(model);
+  std::vector<Index> node_of_place(at(cut.border_start.back()));
+  for (std::size_t b = 0; b < cut.border_node.size(); ++b) {
+    std::fill(node_of_place.begin() + cut.border_start[b], node_of_place.begin() + cut.border_start[b + 1],
+              cut.border_node[b]);
+  }
+  Index empty_lanes = 0;
+  for (const Patch& patch : cut.patches) {
+    std::vector<Index> node;  // of every force
+    node.insert(node.end(), cut.inner_node.begin() + patch.nodes.begin, cut.inner_node.begin() + patch.nodes.end);
+    for (Index i = patch.border.begin; i < patch.border.end; ++i) {
+      node.push_back(node_of_place[at(cut.border_place[at(i)])]);
+    }
+    node.push_back(no_index);
+    ASSERT_EQ(node.size(), at(patch.force_count()));
+    ASSERT_LE(patch.force_count(), most_patch_forces);
+    for (Index block = patch.blocks.begin; block < patch.blocks.end; ++block) {
+      const model::ElementBlock& elements = model.blocks[at(block)];
+      for (Index lane = 0; lane < model::block_lanes; ++lane) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          const Index place = cut.corner[3 * at(block * model::block_lanes + lane) + c];
+          const bool used = lane < elements.count;
+          EXPECT_EQ(node[at(place)], used ? model.triangle[at(elements.first + lane)][c] : no_index);
+          empty_lanes += used ? 0 : 1;
+        }
+      }
     }
   }
+  EXPECT_GT(empty_lanes, 0);
 }
 
 /// Whatever order a mesh file has its triangles in, few nodes lie on borders.
@@ -140,13 +173,11 @@ TEST(node_kernels, tell_what_is_not_finite_and_when) {
     const Workspace workspace(model, kernel);
     const auto run = [&](double force, bool go_on) {
       model::State state = model::initial_state(model);
-      std::vector<CornerForce> corner_force(3 * at(model.element_count()));
-      corner_force[at(model.corner[at(model.corner_start[2])])].moment.z = force;
+      std::vector<NodeForce> node_force(4);
+      node_force[2].moment.z = force;
       std::vector<Index> nodes{0, 1, 2, 3};
-      const NodeKernelArguments arguments{corner_force.data(),
-                                          model.corner.data(),
-                                          model.corner_start.data(),
-                                          0,
+      const NodeKernelArguments arguments{node_force.data(),
+                                          nullptr,
                                           nullptr,
                                           workspace.inverse_inertia.data(),
                                           state.motion.data(),

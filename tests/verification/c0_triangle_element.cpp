@@ -66,7 +66,7 @@ PatchResult load_patch(const Patch& patch, const std::vector<Vec3d>& v, const st
     }
     const auto frame = frame_of(x);
     ShellResultants<double> s{};
-    const auto e = fexp::physics::strain_increment(frame, vt, wt, short_step);
+    const auto e = fexp::physics::strain_increment(frame, vt[1] - vt[0], vt[2] - vt[0], wt, short_step);
     fexp::physics::update_elastic(patch.section, 0.5 * frame.doubled_area, e, s);
     for (double* value :
          {&s.nxx, &s.nyy, &s.nxy, &s.mxx, &s.myy, &s.mxy, &s.qxz, &s.qyz, &s.drill[0], &s.drill[1], &s.drill[2]}) {
@@ -199,7 +199,7 @@ Matrix18 element_stiffness(const ShellSection& section, const Corners& x) {
     (j % 3 == 0 ? target.x : j % 3 == 1 ? target.y : target.z) = 1.0;
     ShellResultants<double> s{};
     fexp::physics::update_elastic(section, 0.5 * frame.doubled_area,
-                                  fexp::physics::strain_increment(frame, v, w, short_step), s);
+                                  fexp::physics::strain_increment(frame, v[1] - v[0], v[2] - v[0], w, short_step), s);
     Corners f, m;
     fexp::physics::corner_forces(section, frame, s, f, m);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -339,7 +339,8 @@ TEST(c0_triangle, finite_rigid_rotation_in_one_step_gives_no_strain) {
         middle[c] = end[c] - 0.5 * v[c];
         w[c] = rate;
       }
-      const ShellIncrement<double> e = fexp::physics::strain_increment(frame_of(middle), v, w, 1.0);
+      const ShellIncrement<double> e =
+          fexp::physics::strain_increment(frame_of(middle), v[1] - v[0], v[2] - v[0], w, 1.0);
       const double largest = std::max({std::abs(e.exx), std::abs(e.eyy), std::abs(e.gxy), std::abs(e.kxx),
                                        std::abs(e.kyy), std::abs(e.kxy), std::abs(e.gxz), std::abs(e.gyz),
                                        std::abs(e.drill[0]), std::abs(e.drill[1]), std::abs(e.drill[2])});

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
 #include "base/inline.hpp"
 #include "base/pack.hpp"
 #include "solve/kernels.hpp"
@@ -21,51 +25,81 @@ struct Lanes<double> {
   static void store(const double& v, double* p) noexcept { *p = v; }
 };
 
-/// What the first half of an element's update hands to the second.
-template <class T>
-struct Strained {
-  physics::ShellIncrement<T> increment;
-  T middle_area;  // Of the mid-step triangle [length^2]
-  Vec3<T> a, b;   // Sides 1-2 and 1-3 at the end of the step [length]
-};
+/// Rows of what an element needs of its corners' motion: sides 1-2 and 1-3 at the end of the step [length], velocities
+/// of corners 2 and 3 relative to 1 [length/time], rotation rates [1/time].
+enum MotionRow : Index { row_a = 0, row_b = 3, row_v12 = 6, row_v13 = 9, row_w = 12, motion_rows = 21 };
 
-/// Motion of the corners and strain increments of lane_count<T> consecutive lanes of a block.
+/// Gathers them for lane_count<T> triangles.
 template <class T>
-FEXP_INLINE void strain_lanes(const ElementKernelArguments& k, const model::ElementBlock& block, Index first,
-                              Strained<T>& strained) noexcept {
-  constexpr Index width = lane_count<T>;
-  std::array<Vec3<T>, 3> x, v, w;
-  for (std::size_t corner = 0; corner < 3; ++corner) {
-    std::array<const double*, at(width)> rows;
-    for (Index lane = 0; lane < width; ++lane) {
-      const Index used = first + lane < block.count ? first + lane : block.count - 1;
-      rows[at(lane)] = &k.motion[k.triangle[block.first + used][corner]].position.x;
+FEXP_INLINE void gather(const model::NodeMotion* motion, const std::array<Index, 3>* triangle, double* rows) noexcept {
+  std::array<std::array<T, 9>, 3> corner;
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::array<const double*, at(lane_count<T>)> nodes;
+    for (std::size_t lane = 0; lane < nodes.size(); ++lane) {
+      nodes[lane] = &motion[triangle[lane][c]].position.x;
     }
-    std::array<T, 9> motion;
-    load_rows(rows, motion);
-    x[corner] = {motion[0], motion[1], motion[2]};
-    v[corner] = {motion[3], motion[4], motion[5]};
-    w[corner] = {motion[6], motion[7], motion[8]};
+    load_rows(nodes, corner[c]);
   }
-  strained.a = x[1] - x[0];
-  strained.b = x[2] - x[0];
-  const T half_dt(0.5 * k.dt);
-  const physics::TriangleFrame<T> middle =
-      physics::triangle_frame(strained.a - half_dt * (v[1] - v[0]), strained.b - half_dt * (v[2] - v[0]));
-  strained.middle_area = T(0.5) * middle.doubled_area;
-  strained.increment = physics::strain_increment(middle, v, w, T(k.dt));
+  const auto store = [rows](Index row, const T& value) { Lanes<T>::store(value, rows + at(row) * block_lanes); };
+  for (Index i = 0; i < 3; ++i) {
+    store(row_a + i, corner[1][at(i)] - corner[0][at(i)]);
+    store(row_b + i, corner[2][at(i)] - corner[0][at(i)]);
+    store(row_v12 + i, corner[1][at(i + 3)] - corner[0][at(i + 3)]);
+    store(row_v13 + i, corner[2][at(i + 3)] - corner[0][at(i + 3)]);
+    for (Index c = 0; c < 3; ++c) {
+      store(row_w + 3 * c + i, corner[at(c)][at(i + 6)]);
+    }
+  }
 }
 
-/// Resultants and corner forces of the same lanes. `row` is their place in the first row of the block's history.
-template <class T>
-FEXP_INLINE void stress_lanes(const physics::ShellStiffness& stiffness, const Strained<T>& strained, double* row,
-                              CornerForce* corner_force, std::size_t used) noexcept {
-  using Access = Lanes<T>;
-  // Before the resultants, which do not need it, so that its roots and division are under way meanwhile.
-  const physics::TriangleFrame<T> frame = physics::triangle_frame(strained.a, strained.b);
+/// Adds lane after lane to the forces on the corners' nodes.
+template <int W, InstructionSet Set>
+FEXP_INLINE void scatter(const std::array<std::array<BasicPack<W, Set>, 6>, 3>& corner, const std::uint16_t* place,
+                         NodeForce* force) noexcept {
+  using Lane = BasicPack<W, Set>;
+  constexpr std::size_t width = W, pieces = (6 + width - 1) / width;
+  std::array<std::array<std::array<typename Lane::Native, width>, pieces>, 3> rows;
+  for (std::size_t c = 0; c < 3; ++c) {
+    to_rows(corner[c], rows[c]);
+  }
+  for (std::size_t lane = 0; lane < width; ++lane) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      double* p = &force[place[3 * lane + c]].force.x;
+      for (std::size_t piece = 0; piece < pieces; ++piece) {
+        (Lane::load(p + piece * width) + Lane(rows[c][piece][lane])).store(p + piece * width);
+      }
+    }
+  }
+}
+FEXP_INLINE void scatter(const std::array<std::array<double, 6>, 3>& corner, const std::uint16_t* place,
+                         NodeForce* force) noexcept {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::array<double, 6>& f = corner[c];
+    force[place[c]].force += Vec3d{f[0], f[1], f[2]};
+    force[place[c]].moment += Vec3d{f[3], f[4], f[5]};
+  }
+}
 
-  const auto load_row = [row](Index r) { return Access::load(row + at(r) * block_lanes); };
-  const auto store_row = [row](Index r, const T& value) { Access::store(value, row + at(r) * block_lanes); };
+/// Resultants and corner forces of lane_count<T> elements. `motion` and `history` are their places in first rows.
+template <class T>
+FEXP_INLINE void update(const physics::ShellStiffness& stiffness, double dt, const double* motion, double* history,
+                        const std::uint16_t* place, NodeForce* node_force) noexcept {
+  using Access = Lanes<T>;
+  const auto load_vector = [motion](Index row) {
+    const double* p = motion + at(row) * block_lanes;
+    return Vec3<T>{Access::load(p), Access::load(p + block_lanes), Access::load(p + 2 * block_lanes)};
+  };
+  const Vec3<T> a = load_vector(row_a), b = load_vector(row_b);
+  const Vec3<T> v12 = load_vector(row_v12), v13 = load_vector(row_v13);
+  const std::array<Vec3<T>, 3> w{load_vector(row_w), load_vector(row_w + 3), load_vector(row_w + 6)};
+  const T half_dt(0.5 * dt);
+  const physics::TriangleFrame<T> middle = physics::triangle_frame(a - half_dt * v12, b - half_dt * v13);
+  const physics::ShellIncrement<T> increment = physics::strain_increment(middle, v12, v13, w, T(dt));
+  // Before the resultants, which do not need it, so that its roots and division are under way meanwhile.
+  const physics::TriangleFrame<T> frame = physics::triangle_frame(a, b);
+
+  const auto load_row = [history](Index r) { return Access::load(history + at(r) * block_lanes); };
+  const auto store_row = [history](Index r, const T& value) { Access::store(value, history + at(r) * block_lanes); };
   physics::ShellResultants<T> s{
       load_row(model::row_nxx),
       load_row(model::row_nyy),
@@ -77,7 +111,7 @@ FEXP_INLINE void stress_lanes(const physics::ShellStiffness& stiffness, const St
       load_row(model::row_qyz),
       {load_row(model::row_drill_1), load_row(model::row_drill_2), load_row(model::row_drill_3)},
       load_row(model::row_energy)};
-  physics::update_elastic(stiffness, strained.middle_area, strained.increment, s);
+  physics::update_elastic(stiffness, T(0.5) * middle.doubled_area, increment, s);
   store_row(model::row_nxx, s.nxx);
   store_row(model::row_nyy, s.nyy);
   store_row(model::row_nxy, s.nxy);
@@ -93,30 +127,56 @@ FEXP_INLINE void stress_lanes(const physics::ShellStiffness& stiffness, const St
 
   std::array<Vec3<T>, 3> force, moment;
   physics::corner_forces(stiffness, frame, s, force, moment);
-  std::array<T, 18> corners;
+  std::array<std::array<T, 6>, 3> corner;
   for (std::size_t c = 0; c < 3; ++c) {
-    corners[6 * c] = force[c].x;
-    corners[6 * c + 1] = force[c].y;
-    corners[6 * c + 2] = force[c].z;
-    corners[6 * c + 3] = moment[c].x;
-    corners[6 * c + 4] = moment[c].y;
-    corners[6 * c + 5] = moment[c].z;
+    corner[c] = {force[c].x, force[c].y, force[c].z, moment[c].x, moment[c].y, moment[c].z};
   }
-  store_rows(corners, &corner_force->force.x, 18, used);
+  scatter(corner, place, node_force);
+}
+
+/// Blocks of a group: their motion is gathered first and all at once, as the loads for one block would otherwise wait
+/// behind the arithmetic of the one before.
+inline constexpr Index group_blocks = 8;
+
+/// The triangles of lane_count<T> lanes, of which the first `used` have one: as they are stored, or the last of them
+/// again and again behind.
+template <class T>
+FEXP_INLINE const std::array<Index, 3>* full_lanes(
+    const std::array<Index, 3>* triangle, Index used,
+    std::array<std::array<Index, 3>, at(lane_count<T>)>& filled_up) noexcept {
+  if (used >= lane_count<T>) {
+    return triangle;
+  }
+  for (Index lane = 0; lane < lane_count<T>; ++lane) {
+    filled_up[at(lane)] = triangle[lane < used ? lane : used - 1];
+  }
+  return filled_up.data();
 }
 
 template <class T>
 inline void update_blocks(const ElementKernelArguments& k, Index begin, Index end) noexcept {
   constexpr Index width = lane_count<T>;
-  for (Index index = begin; index < end; ++index) {
-    const model::ElementBlock& block = k.blocks[index];
-    for (Index first = 0; first < block.count; first += width) {
-      const Index used = block.count - first < width ? block.count - first : width;
-      Strained<T> strained;
-      strain_lanes<T>(k, block, first, strained);
-      stress_lanes<T>(k.sections[block.section], strained,
-                      k.history + (at(index) * model::element_rows * block_lanes + at(first)),
-                      k.corner_force + 3 * at(block.first + first - k.first_element), at(used));
+  constexpr std::size_t block_motion = at(motion_rows) * block_lanes;
+  // Bytes, because an array of doubles would be set to zero first.
+  alignas(64) std::array<std::byte, at(group_blocks) * block_motion * sizeof(double)> storage;
+  auto* const motion = reinterpret_cast<double*>(storage.data());
+  for (Index group = begin; group < end; group += group_blocks) {
+    const Index group_end = end - group < group_blocks ? end : group + group_blocks;
+    for (Index index = group; index < group_end; ++index) {
+      const model::ElementBlock& block = k.blocks[index];
+      for (Index first = 0; first < block.count; first += width) {
+        std::array<std::array<Index, 3>, at(width)> filled_up;
+        gather<T>(k.motion, full_lanes<T>(k.triangle + block.first + first, block.count - first, filled_up),
+                  motion + at(index - group) * block_motion + first);
+      }
+    }
+    for (Index index = group; index < group_end; ++index) {
+      const model::ElementBlock& block = k.blocks[index];
+      for (Index first = 0; first < block.count; first += width) {
+        update<T>(k.sections[block.section], k.dt, motion + at(index - group) * block_motion + first,
+                  k.history + at(index) * model::element_rows * block_lanes + first,
+                  k.place + 3 * (at(index) * block_lanes + at(first)), k.force);
+      }
     }
   }
 }

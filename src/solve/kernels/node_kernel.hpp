@@ -78,7 +78,7 @@ template <class Six>
   return sum[0] == 0.0 && sum[1] == 0.0 && sum[2] == 0.0 && sum[3] == 0.0 && sum[4] == 0.0 && sum[5] == 0.0;
 }
 
-/// Nodes one by one: their corner forces summed in the order of their corners, then as NodeKernel says.
+/// Nodes one by one: their forces summed in order, then as NodeKernel says.
 template <class Six>
 inline NodeKernelReport update_nodes(const NodeKernelArguments& k, const Index* nodes, Index begin,
                                      Index end) noexcept {
@@ -89,14 +89,9 @@ inline NodeKernelReport update_nodes(const NodeKernelArguments& k, const Index* 
   for (Index i = begin; i < end; ++i) {
     const Index node = nodes[i];
     Six internal = zero;
-    if (k.corner != nullptr) {
-      for (Index c = k.corner_start[node]; c < k.corner_start[node + 1]; ++c) {
-        internal = internal + Six::load(&k.corner_force[k.corner[c] - k.first_corner].force.x);
-      }
-    } else {
-      for (Index c = k.corner_start[i]; c < k.corner_start[i + 1]; ++c) {
-        internal = internal + Six::load(&k.corner_force[c].force.x);
-      }
+    const Index force_end = k.force_start == nullptr ? i - begin + 1 : k.force_start[i + 1];
+    for (Index f = k.force_start == nullptr ? i - begin : k.force_start[i]; f < force_end; ++f) {
+      internal = internal + Six::load(&k.force[f].force.x);
     }
     const Six outer = k.contact_force == nullptr ? zero : Six::load_three(&k.contact_force[node].x);
     const Six acceleration =

@@ -102,11 +102,11 @@ model::Model build(Scene scene, Index elements) {
   return frozen(d);
 }
 
-model::Model four_spheres(int cells) {
+model::Model four_spheres(int cells, double part) {
   constexpr double thickness = 0.01, duration = 0.02;
   struct Sphere {
     const char* name;
-    double gap;  // To the first of the pair [length]; 0 for that itself
+    double gap;  // To the first of the pair [length]; 0: is that itself
     double y;
     Vec3d velocity;
   };
@@ -116,10 +116,11 @@ model::Model four_spheres(int cells) {
                                    {"d", 0.115, 2.0, {-11.0, 0.0, -0.02}}}};
   const double scale = static_cast<double>(sphere_cells) / cells;
   model::Description d = description(scale * thickness);
-  d.run.duration = scale * duration;
+  d.run.duration = scale * part * duration;
   for (const Sphere& one : all) {
     d.bodies.push_back(body(one.name, model::CubedSphere{sphere_radius, cells}));
-    d.bodies.back().translate = {one.gap > 0.0 ? 2.0 * sphere_radius + scale * one.gap : 0.0, one.y, 0.0};
+    d.bodies.back().translate = {
+        one.gap > 0.0 ? 2.0 * sphere_radius + scale * (thickness + part * (one.gap - thickness)) : 0.0, one.y, 0.0};
     d.bodies.back().velocity = one.velocity;
   }
   return frozen(d);

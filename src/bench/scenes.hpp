@@ -36,8 +36,9 @@ inline constexpr int sphere_cells = 4;
 
 /// examples/four_spheres.toml, without output, with 12 cells^2 triangles a sphere. Where spheres have more than the
 /// example's 4 cells, their thickness, the gaps between them and the duration shrink as their elements do: shells stay
-/// as slender as the example's against their elements, and a run has about as many steps before and after the impact.
-[[nodiscard]] model::Model four_spheres(int cells);
+/// as slender as the example's against their elements, and a run has about `part` as many steps before and after the
+/// impact.
+[[nodiscard]] model::Model four_spheres(int cells, double part = 1.0);
 
 /// One sphere of about so many elements.
 [[nodiscard]] model::Model sphere(Index elements);

@@ -206,11 +206,10 @@ std::function<ExitCode()> declare(CLI::App& app) {
 
 }  // namespace
 
-const Command bench_command{
-    "bench", "Measure how fast this machine runs the solver, and what its hardware would allow",
-    "  fexp bench                              some minutes; the machine should do nothing else\n"
-    "  fexp bench --filter plate --threads 1,8\n"
-    "  fexp bench --json --csv rows.csv > machine.json",
-    declare};
+const Command bench_command{"bench", "Measure how fast this machine runs the solver, and what its hardware allows",
+                            "  fexp bench                              minutes, on a machine without other work\n"
+                            "  fexp bench --filter plate --threads 1,8\n"
+                            "  fexp bench --json --csv rows.csv > machine.json",
+                            declare};
 
 }  // namespace fexp::app

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "base/stopwatch.hpp"
 #include "bench/heap.hpp"

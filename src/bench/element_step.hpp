@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
+#include "base/vec3.hpp"
 #include "bench/counted.hpp"
 #include "model/model.hpp"
 #include "physics/c0_triangle.hpp"

@@ -13,6 +13,7 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/aligned_vector.hpp"
@@ -135,7 +136,7 @@ double Roofs::peak_flops() const noexcept { return std::max(fused.best, separate
 
 double last_cache_bytes() {
   // The processors that share a cache have the same list of them; the last level has the largest number.
-  std::map<std::string, std::pair<int, double>> caches;
+  std::map<std::pair<std::string, std::string>, std::pair<int, double>> caches;
   std::error_code error;
   for (const fs::directory_entry& processor : fs::directory_iterator("/sys/devices/system/cpu", error)) {
     for (const fs::directory_entry& cache : fs::directory_iterator(processor.path() / "cache", error)) {
@@ -143,7 +144,7 @@ double last_cache_bytes() {
       const std::string shared = first_word(cache.path() / "shared_cpu_list");
       const double bytes = size_of(first_word(cache.path() / "size"));
       if (!level.empty() && bytes > 0.0) {
-        caches[level + ":" + shared] = {std::stoi(level), bytes};
+        caches[{level, shared}] = {std::stoi(level), bytes};
       }
     }
   }

@@ -2,6 +2,7 @@
 #include "bench/scenes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>

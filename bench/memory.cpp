@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
-#include <malloc.h>
 
 #include <fstream>
 #include <string>
 
-#include "cases.hpp"
+#include "bench/heap.hpp"
+#include "bench/scenes.hpp"
 #include "cluster/simulation.hpp"
 #include "parallel/parallel.hpp"
 #include "resident_memory.hpp"
@@ -15,28 +15,24 @@
 namespace {
 
 using fexp::Index;
+using fexp::bench::heap_bytes;
 using fexp::bench::Scene;
-
-double bytes_in_use() {
-  const struct mallinfo2 now = mallinfo2();
-  return static_cast<double>(now.uordblks) + static_cast<double>(now.hblkhd);
-}
 
 void memory(benchmark::State& state, Scene scene) {
   const double resident_before = fexp::bench::most_resident_bytes();
   for (auto iteration : state) {
     fexp::parallel::with_threads(2, [&] {
-      const double at_start = bytes_in_use();
+      const double at_start = heap_bytes();
       const fexp::model::Model model = fexp::bench::build(scene, static_cast<Index>(state.range(0)));
-      const double with_model = bytes_in_use();
+      const double with_model = heap_bytes();
       double state_bytes = 0.0, workspace_bytes = 0.0;
       {
         const fexp::model::State initial = fexp::model::initial_state(model);
-        const double with_state = bytes_in_use();
+        const double with_state = heap_bytes();
         state_bytes = with_state - with_model;
         const fexp::solve::Workspace workspace(
             model, fexp::solve::select_element_kernel(fexp::solve::KernelChoice::automatic));
-        workspace_bytes = bytes_in_use() - with_state;
+        workspace_bytes = heap_bytes() - with_state;
       }
       fexp::cluster::Simulation simulation(model, fexp::solve::KernelChoice::automatic);
       simulation.run_epoch(fexp::bench::four_steps(model));
@@ -45,7 +41,7 @@ void memory(benchmark::State& state, Scene scene) {
       state.counters["model"] = (with_model - at_start) / elements;
       state.counters["state"] = state_bytes / elements;
       state.counters["workspace"] = workspace_bytes / elements;
-      state.counters["run"] = (bytes_in_use() - at_start) / elements;
+      state.counters["run"] = (heap_bytes() - at_start) / elements;
       state.counters["resident"] = (fexp::bench::most_resident_bytes() - resident_before) / elements;
     });
   }

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "app/load.hpp"
-#include "cases.hpp"
+#include "bench/scenes.hpp"
 #include "cluster/simulation.hpp"
 
 /// From a deck with a mesh file to the end of the first step.

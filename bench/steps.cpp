@@ -5,7 +5,7 @@
 #include <ctime>
 #include <optional>
 
-#include "cases.hpp"
+#include "bench/scenes.hpp"
 #include "cluster/simulation.hpp"
 #include "parallel/parallel.hpp"
 

@@ -200,6 +200,8 @@ CASES = {
         "An unknown option": Case(options=("deck.toml", "--thread", "2")),
         "No thread": Case(options=("deck.toml", "--threads", "0")),
         "An unknown command": Case(command="rum"),
+        "Threads that are no number": Case(command="bench", options=("--threads", "1,many")),
+        "No such benchmark": Case(command="bench", options=("--filter", "sphere_")),
         "Something that is no result": Case(command="info", options=("deck.toml",)),
         "A comparison with nothing": Case(command="compare", options=("a.run", "b.run")),
         "Results that would be replaced": Case(files={"results/notes.txt": "mine\n"},

@@ -172,7 +172,7 @@ class Help(program.Case):
     def test_every_command_has_examples_and_the_exit_codes(self):
         overview = self.fexp("--help")
         self.assertEqual((overview.returncode, overview.stderr), (0, ""))
-        for command in ("run", "check", "info", "compare", "reference", "cluster"):
+        for command in ("run", "check", "info", "compare", "bench", "reference", "cluster"):
             text = self.fexp(command, "--help").stdout
             self.assertIn(f"  fexp {command} ", text)
             self.assertIn(f"  fexp {command} ", overview.stdout)

@@ -4,7 +4,7 @@
 first. If that unit was compiled for a wider instruction set, the whole program needs a machine that has it. So the
 kernels for wider instruction sets may emit no weak function that any other object emits too.
 
-usage: check_kernel_symbols.py --nm NM ARCHIVE
+usage: check_kernel_symbols.py --nm NM ARCHIVE...
 """
 import re
 import subprocess
@@ -28,22 +28,31 @@ def weak_functions(nm, archive):
     return functions
 
 
-def main():
-    nm, archive = sys.argv[2], sys.argv[3]
+def leaks(nm, archive):
+    """How many wide kernels the archive has, and the functions that could leak from them."""
     functions = weak_functions(nm, archive)
     wide = [member for member in functions if WIDE.search(member)]
-    if not wide:
-        print(f"{archive} has no kernel for a wider instruction set")
-        return 1
     # Types named after an instruction set are compiled for that one only; everything else may meet its namesake in
     # another object of the program.
-    shared = {
+    return len(wide), {
         f"{member}: {name}" for member in wide for name in functions[member] if "InstructionSet" not in name
     }
-    for line in sorted(shared):
-        print(line)
-    print(f"{len(wide)} wide kernels, {len(shared)} functions that could leak from them")
-    return 1 if shared else 0
+
+
+def main():
+    nm, archives = sys.argv[2], sys.argv[3:]
+    found = 0
+    for archive in archives:
+        wide, shared = leaks(nm, archive)
+        if not wide:
+            print(f"{archive} has no kernel for a wider instruction set")
+            found += 1
+            continue
+        for line in sorted(shared):
+            print(line)
+        print(f"{archive}: {wide} wide kernels, {len(shared)} functions that could leak from them")
+        found += len(shared)
+    return 1 if found else 0
 
 
 if __name__ == "__main__":

@@ -20,7 +20,8 @@ ALLOWED = {
     "cluster": ["base", "parallel", "physics", "model", "contact", "solve"],
     "io": ["base", "parallel", "physics", "model"],
     "coordinator": ["base", "io"],
-    "app": ["base", "parallel", "physics", "model", "contact", "solve", "cluster", "io", "coordinator"],
+    "bench": ["base", "parallel", "physics", "model", "contact", "solve", "cluster"],
+    "app": ["base", "parallel", "physics", "model", "contact", "solve", "cluster", "io", "coordinator", "bench"],
 }
 
 # Libraries that one layer hides from the others.

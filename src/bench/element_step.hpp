@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "base/vec3.hpp"
+#include "bench/counted.hpp"
+#include "model/model.hpp"
+#include "physics/c0_triangle.hpp"
+
+namespace fexp::bench {
+
+/// Motion of a triangle's corners, as an element's step finds it, and its history.
+template <class T>
+struct TriangleMotion {
+  std::array<Vec3<T>, 3> position;       // At the end of the step [length]
+  std::array<Vec3<T>, 3> velocity;       // At mid-step [length/time]
+  std::array<Vec3<T>, 3> rotation_rate;  // At mid-step [1/time]
+  physics::ShellResultants<T> resultants;
+};
+
+template <class T>
+struct CornerActions {
+  std::array<Vec3<T>, 3> force;   // [force]
+  std::array<Vec3<T>, 3> moment;  // [force*length]
+};
+
+/// The step of one element, as the element kernel takes it from the templates of `physics`.
+template <class T>
+CornerActions<T> step_element(const physics::ShellStiffness& stiffness, TriangleMotion<T>& m, const T& dt) {
+  const Vec3<T> a = m.position[1] - m.position[0], b = m.position[2] - m.position[0];
+  const T half_dt = dt * T(0.5);
+  const physics::TriangleFrame<T> middle = physics::triangle_frame(a - half_dt * (m.velocity[1] - m.velocity[0]),
+                                                                   b - half_dt * (m.velocity[2] - m.velocity[0]));
+  const T middle_area = T(0.5) * middle.doubled_area;
+  const physics::ShellIncrement<T> increment = physics::strain_increment(middle, m.velocity, m.rotation_rate, dt);
+  physics::update_elastic(stiffness, middle_area, increment, m.resultants);
+  const physics::TriangleFrame<T> frame = physics::triangle_frame(a, b);
+  CornerActions<T> actions;
+  physics::corner_forces(stiffness, frame, m.resultants, actions.force, actions.moment);
+  return actions;
+}
+
+/// What one step of one element needs at the least in a model without contact, loads and conditions.
+struct ElementStepCost {
+  OperationCount element;  ///< Of the element's kernel and the sums of its corner forces
+  OperationCount node;     ///< Of each node: its acceleration and both half steps
+  double nodes{};          ///< Per element [-]
+
+  [[nodiscard]] double flops() const noexcept {
+    return static_cast<double>(element.flops()) + nodes * static_cast<double>(node.flops());
+  }
+  /// What must be read and written where nothing is left in a cache from the step before: the element's history twice,
+  /// its corners' numbers once, the motion of its share of nodes twice, their inverse masses once [byte].
+  [[nodiscard]] double least_bytes() const noexcept;
+  /// The same, each once: what a program must hold [byte].
+  [[nodiscard]] double least_memory() const noexcept;
+};
+
+[[nodiscard]] ElementStepCost element_step_cost(const model::Model& model);
+
+}  // namespace fexp::bench

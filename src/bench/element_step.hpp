@@ -29,11 +29,11 @@ struct CornerActions {
 template <class T>
 CornerActions<T> step_element(const physics::ShellStiffness& stiffness, TriangleMotion<T>& m, const T& dt) {
   const Vec3<T> a = m.position[1] - m.position[0], b = m.position[2] - m.position[0];
+  const Vec3<T> v12 = m.velocity[1] - m.velocity[0], v13 = m.velocity[2] - m.velocity[0];
   const T half_dt = dt * T(0.5);
-  const physics::TriangleFrame<T> middle = physics::triangle_frame(a - half_dt * (m.velocity[1] - m.velocity[0]),
-                                                                   b - half_dt * (m.velocity[2] - m.velocity[0]));
+  const physics::TriangleFrame<T> middle = physics::triangle_frame(a - half_dt * v12, b - half_dt * v13);
   const T middle_area = T(0.5) * middle.doubled_area;
-  const physics::ShellIncrement<T> increment = physics::strain_increment(middle, m.velocity, m.rotation_rate, dt);
+  const physics::ShellIncrement<T> increment = physics::strain_increment(middle, v12, v13, m.rotation_rate, dt);
   physics::update_elastic(stiffness, middle_area, increment, m.resultants);
   const physics::TriangleFrame<T> frame = physics::triangle_frame(a, b);
   CornerActions<T> actions;

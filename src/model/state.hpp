@@ -65,13 +65,13 @@ struct BodyLedger {
 /// The state at a step boundary: all that a restart or another machine needs.
 struct State {
   std::int64_t step{};
-  double time{};                                // [time]
-  std::vector<NodeMotion> motion;               // [nodes]
-  std::vector<NodeAcceleration> acceleration;   // [nodes]
-  AlignedVector<double> history;                // [blocks][element_rows][block_lanes]
-  std::vector<std::vector<ContactSide>> sides;  // [bodies]: sorted by (node, element); the body's nodes, and
-                                                // barriers' nodes with its elements
-  std::vector<BodyLedger> ledger;               // [bodies]
+  double time{};                                 // [time]
+  AlignedVector<NodeMotion> motion;              // [nodes]
+  AlignedVector<NodeAcceleration> acceleration;  // [nodes]
+  AlignedVector<double> history;                 // [blocks][element_rows][block_lanes]
+  std::vector<std::vector<ContactSide>> sides;   // [bodies]: sorted by (node, element); the body's nodes, and
+                                                 // barriers' nodes with its elements
+  std::vector<BodyLedger> ledger;                // [bodies]
 };
 
 /// State at time zero: reference positions, initial velocities as far as fixed nodes and planes of symmetry allow, no

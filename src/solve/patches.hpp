@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/aligned_vector.hpp"
 #include "base/index.hpp"
 #include "model/model.hpp"
 #include "model/patch_cut.hpp"
@@ -34,9 +35,9 @@ struct Patches {
 
   std::vector<Patch> patches;            // In order of bodies
   std::vector<IndexRange> body_patches;  // [bodies]: into patches
-  std::vector<Index> inner_node;         // Ascending in each patch
+  AlignedVector<Index> inner_node;       // Ascending in each patch
   std::vector<Index> border_place;       // Where a patch's shares go, in ascending order of its border nodes
-  std::vector<std::uint16_t> corner;     // [blocks][block_lanes][3]: into the forces of the patch
+  AlignedVector<std::uint16_t> corner;   // [blocks][block_lanes][3]: into the forces of the patch
   std::vector<Index> border_node;        // Ascending
   std::vector<Index> border_start;       // [border nodes + 1]: places of a node's shares, in order of patches
   std::vector<IndexRange> body_border;   // [bodies]: into border_node

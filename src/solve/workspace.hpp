@@ -32,9 +32,9 @@ struct Workspace {
   SelectedKernel kernel;
   std::vector<physics::ShellStiffness> sections;  // [sections]
   Patches patches;
-  AlignedVector<NodeForce> border_force;        // [shares of border nodes]
-  std::vector<InverseInertia> inverse_inertia;  // [nodes]
-  contact::NodeContact contact;                 // At the last evaluated positions
+  AlignedVector<NodeForce> border_force;          // [shares of border nodes]
+  AlignedVector<InverseInertia> inverse_inertia;  // [nodes]
+  contact::NodeContact contact;                   // At the last evaluated positions
   /// Loads and gravity at the last evaluated instant, shape [nodes]; empty when the model has none.
   std::vector<NodalAction> load;
   std::vector<BodyActions> actions;                // [bodies]

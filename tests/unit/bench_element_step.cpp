@@ -65,9 +65,10 @@ TEST(BenchElementStep, FollowsTheElementKernel) {
   }
   const std::array<fexp::Index, 3> triangle{0, 1, 2};
   const model::ElementBlock block{0, 1, 0, 0};
-  std::array<solve::CornerForce, 3> corner{};
-  const solve::ElementKernelArguments arguments{nodes.data(),   &triangle,     &block, &stiffness(),
-                                                history.data(), corner.data(), 0,      dt};
+  const std::array<std::uint16_t, 3> place{0, 1, 2};
+  std::array<solve::NodeForce, 3> corner{};
+  const solve::ElementKernelArguments arguments{nodes.data(),   &triangle,    &block,        &stiffness(),
+                                                history.data(), place.data(), corner.data(), dt};
   solve::select_element_kernel(solve::KernelChoice::scalar).elements(arguments, 0, 1);
 
   const bench::CornerActions<double> actions = bench::step_element(stiffness(), m, dt);

@@ -59,6 +59,7 @@ void NodeWatch::recall(std::span<const model::ContactSide> memory) {
 void NodeWatch::gather(std::span<const Index> candidates, std::span<const model::ContactSide> memory) {
   deep_.clear();
   through_.clear();
+  followed_.clear();
   elements_.assign(candidates.begin(), candidates.end());
   if (memory.empty()) {
     return;
@@ -80,6 +81,7 @@ void NodeWatch::gather(std::span<const Index> candidates, std::span<const model:
 /// goes on. On the rim of a surface it ends.
 void NodeWatch::follow(const model::ContactSide& known) {
   Watched w = measured(known.element);
+  followed_.push_back(w);
   if (!w.is_through(known.side)) {
     return;
   }
@@ -132,11 +134,17 @@ NodeWatch::Watched NodeWatch::measured(Index element) {
 /// elements that share a feature, the closest acts (by squared distance, then number).
 void NodeWatch::measure() {
   watched_.clear();
+  auto followed = followed_.cbegin();  // In ascending order of elements, as these are
   for (const Index element : elements_) {
+    while (followed != followed_.cend() && followed->element < element) {
+      ++followed;
+    }
+    const bool is_known = followed != followed_.cend() && followed->element == element;
     const double watch = watch_distance(model_, node_, element);
-    const bool near = closest_on(model_, now_, element, point_).distance2 < watch * watch;
-    if (near || find(deep_, element) != nullptr) {
-      watched_.push_back(measured(element));
+    const double distance2 =
+        is_known ? followed->closest.distance2 : closest_on(model_, now_, element, point_).distance2;
+    if (distance2 < watch * watch || find(deep_, element) != nullptr) {
+      watched_.push_back(is_known ? *followed : measured(element));
     }
   }
 }

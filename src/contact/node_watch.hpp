@@ -92,6 +92,7 @@ class NodeWatch {
   std::vector<Index> elements_;
   std::vector<model::ContactSide> deep_;     ///< Elements that the node has come through and where it belongs
   std::vector<model::ContactSide> through_;  ///< Of those remembered, the ones that the node has come through
+  std::vector<Watched> followed_;            ///< Those remembered, as they are measured now
   std::vector<Watched> watched_;
 };
 

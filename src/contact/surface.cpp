@@ -74,7 +74,8 @@ View view_of(const model::Model& model, Normals& normals, Index element,
   };
   look_from(element);
   for_each_sharing(model, element, closest.feature, look_from);
-  if (physics::is_corner(closest.feature)) {
+  // Where all views are strictly of one sign, the outermost edge's is, too.
+  if (physics::is_corner(closest.feature) && !(lowest > 0.0) && !(highest < 0.0)) {
     steepest = view_at_outermost_edge(model, normals, element, closest);
   }
   return {steepest < 0.0 ? -1 : 1, lowest >= 0.0 || highest <= 0.0};

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "base/pack.hpp"
 #include "parallel/parallel.hpp"
-#include "physics/critical_step.hpp"
 
 namespace fexp::solve {
 
@@ -41,39 +39,6 @@ double internal_energy(const model::Model& model, const model::State& state, Ind
 }
 
 Diagnostics plus(Diagnostics a, const Diagnostics& b) noexcept { return a += b; }
-
-/// The smallest critical step of elements [begin, end). Several at a time even without wide instructions: the roots of
-/// an element are found one after the other, and the processor waits for them.
-CriticalStep smallest_step(const model::Model& model, const model::State& state, Index begin, Index end) {
-  using T = Pack<model::block_lanes>;
-  CriticalStep found;
-  for (Index e = begin; e < end;) {
-    const model::ElementBlock& block = model.blocks[at(model.element_block[at(e)])];
-    const Index count = std::min(end, block.first + block.count) - e;
-    Vec3<T> a, b;
-    for (int lane = 0; lane < model::block_lanes; ++lane) {
-      const auto& nodes = model.triangle[at(e + std::min(lane, count - 1))];
-      const Vec3d& origin = state.motion[at(nodes[0])].position;
-      const Vec3d side_2 = state.motion[at(nodes[1])].position - origin;
-      const Vec3d side_3 = state.motion[at(nodes[2])].position - origin;
-      a.x.set_lane(lane, side_2.x);
-      a.y.set_lane(lane, side_2.y);
-      a.z.set_lane(lane, side_2.z);
-      b.x.set_lane(lane, side_3.x);
-      b.y.set_lane(lane, side_3.y);
-      b.z.set_lane(lane, side_3.z);
-    }
-    const model::SectionData& section = model.sections[at(block.section)];
-    const T steps = physics::element_critical_step({section.thickness, section.moduli, model.run.drilling},
-                                                   section.density, physics::triangle_frame(a, b));
-    for (int lane = 0; lane < count; ++lane) {
-      const double step = steps.lane(lane);
-      found = smaller(found, {step > 0.0 ? step : 0.0, e + lane});
-    }
-    e += count;
-  }
-  return found;
-}
 
 }  // namespace
 
@@ -130,9 +95,12 @@ Diagnostics diagnostics(const model::Model& model, const model::State& state) {
 }
 
 CriticalStep body_critical_step(const model::Model& model, const model::State& state, Index body) {
+  const StepKernel kernel = select_element_kernel(KernelChoice::automatic).steps;
+  const StepKernelArguments arguments{state.motion.data(), model.triangle.data(), model.blocks.data(),
+                                      model.sections.data(), model.run.drilling};
   return parallel::ordered_fold(
-      model.bodies[at(body)].elements, piece, CriticalStep{},
-      [&](Index begin, Index end) { return smallest_step(model, state, begin, end); }, smaller);
+      model.bodies[at(body)].blocks, piece / model::block_lanes, CriticalStep{},
+      [&](Index begin, Index end) { return kernel(arguments, begin, end); }, smaller);
 }
 
 }  // namespace fexp::solve

@@ -3,6 +3,7 @@
 
 #include "model/model.hpp"
 #include "model/state.hpp"
+#include "solve/kernels.hpp"
 
 namespace fexp::solve {
 
@@ -44,12 +45,6 @@ struct Diagnostics {
 
 /// Sum over all bodies in ascending order.
 [[nodiscard]] Diagnostics diagnostics(const model::Model& model, const model::State& state);
-
-/// Smallest critical step of a range of elements and the lowest element that has it.
-struct CriticalStep {
-  double step{HUGE_VAL};  ///< [time]; zero or NaN-free: a collapsed element reports 0
-  Index element{no_index};
-};
 
 [[nodiscard]] constexpr CriticalStep smaller(const CriticalStep& a, const CriticalStep& b) noexcept {
   return b.step < a.step ? b : a;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string_view>
 
@@ -69,12 +70,31 @@ struct NodeKernelReport {
 using NodeKernel = NodeKernelReport (*)(const NodeKernelArguments& arguments, const Index* nodes, Index begin,
                                         Index end) noexcept;
 
+/// Smallest critical step of a range of elements and the lowest element that has it.
+struct CriticalStep {
+  double step{HUGE_VAL};  ///< [time]; zero or NaN-free: a collapsed element reports 0
+  Index element{no_index};
+};
+
+/// What the step kernels read.
+struct StepKernelArguments {
+  const model::NodeMotion* motion{};       // [nodes]
+  const std::array<Index, 3>* triangle{};  // [elements]
+  const model::ElementBlock* blocks{};     // [blocks]
+  const model::SectionData* sections{};    // [sections]
+  double drilling{};                       ///< Drilling factor beta [-]
+};
+
+/// Smallest critical step over blocks [begin, end) in the present geometry.
+using StepKernel = CriticalStep (*)(const StepKernelArguments& arguments, Index begin, Index end) noexcept;
+
 /// Kernels compiled for one element at a time and for the packs of each instruction set. All give the same bits.
 enum class KernelChoice { automatic, scalar, baseline, avx2, avx512 };
 
 struct SelectedKernel {
   ElementKernel elements{};
   NodeKernel nodes{};
+  StepKernel steps{};
   std::string_view name;  ///< "scalar", "baseline", "avx2" or "avx512"
 };
 

@@ -102,7 +102,7 @@ class Tip {
   }
 
   model::Model model;
-  std::vector<model::NodeMotion> motion;
+  AlignedVector<model::NodeMotion> motion;
   Index node;
   std::vector<model::ContactSide> memory;
   std::vector<contact::ActivePair> active;

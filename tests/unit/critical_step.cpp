@@ -47,6 +47,34 @@ TEST(critical_step, of_a_body_is_to_the_bit_that_of_its_elements_one_by_one) {
   }
 }
 
+/// By every kernel, at blocks of which not all lanes have an element and in which some have collapsed.
+TEST(critical_step, is_the_same_by_every_kernel) {
+  model::Description d = test::description({7850.0, 2.1e11, 0.3}, 0.003);
+  test::add_body(d, "plate", model::Plate{1.0, 1.0, 9, 7, "one"});
+  const model::Model model = test::build(d);
+  ASSERT_NE(model.element_count() % model::block_lanes, 0);
+  model::State state = model::initial_state(model);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> shift(-0.02, 0.02);
+  for (model::NodeMotion& motion : state.motion) {
+    motion.position += {shift(random), shift(random), shift(random)};
+  }
+  const auto& t = model.triangle[77];
+  state.motion[at(t[1])].position = state.motion[at(t[0])].position;
+  const StepKernelArguments arguments{state.motion.data(), model.triangle.data(), model.blocks.data(),
+                                      model.sections.data(), model.run.drilling};
+  const StepKernel scalar = select_element_kernel(KernelChoice::scalar).steps;
+  for (const KernelChoice choice : {KernelChoice::baseline, KernelChoice::avx2, KernelChoice::avx512}) {
+    const SelectedKernel kernel = select_element_kernel(choice);
+    for (Index block = 0; kernel.elements != nullptr && block < model.block_count(); ++block) {
+      const CriticalStep expected = scalar(arguments, block, block + 1),
+                         found = kernel.steps(arguments, block, block + 1);
+      EXPECT_EQ(found.step, expected.step) << kernel.name << ", block " << block;
+      EXPECT_EQ(found.element, expected.element) << kernel.name << ", block " << block;
+    }
+  }
+}
+
 TEST(critical_step, is_zero_where_an_element_has_collapsed) {
   model::Description d = test::description({7850.0, 2.1e11, 0.3}, 0.003);
   test::add_body(d, "plate", model::Plate{1.0, 1.0, 5, 5, "one"});

@@ -184,10 +184,16 @@ void append_copy(const PlacedMesh& placed, const Mesh& mesh, const std::string& 
   body.description = description_index;
   const Index index = model.body_count(), first_node = model.node_count(), first_element = model.element_count();
   body.blocks.begin = model.block_count();
-  for (std::size_t n = 0; n < placed.position.size(); ++n) {
-    model.reference_position.push_back(placed.position[n] + shift);
-    model.node_body.push_back(index);
-    model.node_label.push_back(mesh.node_label.empty() ? static_cast<std::int64_t>(n) : mesh.node_label[n]);
+  for (const Vec3d& position : placed.position) {
+    model.reference_position.push_back(position + shift);
+  }
+  model.node_body.insert(model.node_body.end(), placed.position.size(), index);
+  if (mesh.node_label.empty()) {
+    for (std::size_t n = 0; n < placed.position.size(); ++n) {
+      model.node_label.push_back(static_cast<std::int64_t>(n));
+    }
+  } else {
+    model.node_label.insert(model.node_label.end(), mesh.node_label.begin(), mesh.node_label.end());
   }
   const auto offset = [](const Triangle& t, Index by) {
     Triangle moved = t;
@@ -199,9 +205,9 @@ void append_copy(const PlacedMesh& placed, const Mesh& mesh, const std::string& 
   for (std::size_t t = 0; t < placed.triangle.size(); ++t) {
     model.triangle.push_back(offset(placed.triangle[t], first_node));
     model.neighbour.push_back(offset(placed.neighbour[t], first_element));
-    model.element_part.push_back(placed.part[t]);
-    model.element_label.push_back(placed.label[t]);
   }
+  model.element_part.insert(model.element_part.end(), placed.part.begin(), placed.part.end());
+  model.element_label.insert(model.element_label.end(), placed.label.begin(), placed.label.end());
   append_blocks(placed, first_element, index, model);
   body.nodes = {first_node, model.node_count()};
   body.elements = {first_element, model.element_count()};

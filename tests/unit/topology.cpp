@@ -103,9 +103,8 @@ TEST(topology, turned_triangles_are_turned_back_to_agree_with_the_first_of_their
   std::vector<Triangle> neighbours = edge_neighbours(mixed);
   ASSERT_TRUE(orient_consistently(mixed, neighbours));
   EXPECT_EQ(neighbours, edge_neighbours(mixed));
-  for (std::size_t t = 0; t < mixed.size(); ++t) {
-    const Vec3d &a = mesh.position[at(mixed[t][0])], &b = mesh.position[at(mixed[t][1])],
-                &c = mesh.position[at(mixed[t][2])];
+  for (const Triangle& t : mixed) {
+    const Vec3d &a = mesh.position[at(t[0])], &b = mesh.position[at(t[1])], &c = mesh.position[at(t[2])];
     EXPECT_GT(dot(cross(b - a, c - a), a + b + c), 0.0);
   }
 }

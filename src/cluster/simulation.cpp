@@ -51,7 +51,8 @@ struct Simulation::Attempt {
   std::vector<double> allowance;  // [bodies]
 };
 
-/// No body placed or evaluated yet. Every rank has the whole state of the start, so the notices need not be told.
+/// No body placed or evaluated yet. Every rank has the whole state of the start, so the notices need not be told. Those
+/// of barriers stay; of the other bodies only the extent is asked for before they are noticed anew.
 Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, World world, Blank /*blank*/)
     : model_(model),
       fingerprint_(fingerprint(model)),
@@ -62,7 +63,13 @@ Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, Wo
       notices_(model.bodies.size()),
       owner_(model.bodies.size(), no_machine),
       arrived_(model.bodies.size(), true) {
-  parallel::for_each(model_.body_count(), 1, [&](Index b) { notices_[at(b)] = notice_of(model_, state_, b); });
+  parallel::for_each(model_.body_count(), 1, [&](Index b) {
+    if (model_.bodies[at(b)].barrier) {
+      notices_[at(b)] = notice_of(model_, state_, b);
+    } else {
+      notices_[at(b)].extent = extent_of(model_, state_, b);
+    }
+  });
 }
 
 Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, World world)

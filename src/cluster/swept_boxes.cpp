@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parallel/parallel.hpp"
+
 namespace fexp::cluster {
 
 namespace {
@@ -12,6 +14,7 @@ namespace {
 constexpr double velocity_margin = 1.25;
 /// Free play, as a part of the body's largest extent: a hundredth keeps bodies apart in the graph until they are close.
 constexpr double free_play = 0.01;
+constexpr Index node_piece = 4096;
 
 /// Largest speed that prescribed motion can give a node of the body [length/time].
 double prescribed_speed(const model::Model& model, const model::Body& body) {
@@ -38,20 +41,30 @@ double largest_edge(const Box& box) {
 }  // namespace
 
 BodyExtent extent_of(const model::Model& model, const model::State& state, Index body) {
-  const IndexRange nodes = model.bodies[at(body)].nodes;
-  BodyExtent extent;
-  double speed2 = 0.0, acceleration2 = 0.0;
-  for (Index n = nodes.begin; n < nodes.end; ++n) {
-    const model::NodeMotion& motion = state.motion[at(n)];
-    const Vec3d& acceleration = state.acceleration[at(n)].linear;
-    extent.box.include(motion.position);
-    extent.reach = std::max(extent.reach, model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)]));
-    speed2 = std::max(speed2, dot(motion.velocity, motion.velocity));
-    acceleration2 = std::max(acceleration2, dot(acceleration, acceleration));
-  }
+  // The root of the largest square is taken at the end.
+  const auto part_of = [&](Index begin, Index end) {
+    BodyExtent part;
+    for (Index n = begin; n < end; ++n) {
+      const model::NodeMotion& motion = state.motion[at(n)];
+      const Vec3d& acceleration = state.acceleration[at(n)].linear;
+      part.box.include(motion.position);
+      part.reach = std::max(part.reach, model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)]));
+      part.speed = std::max(part.speed, dot(motion.velocity, motion.velocity));
+      part.acceleration = std::max(part.acceleration, dot(acceleration, acceleration));
+    }
+    return part;
+  };
+  const auto larger = [](BodyExtent a, const BodyExtent& b) {
+    a.box.include(b.box);
+    a.reach = std::max(a.reach, b.reach);
+    a.speed = std::max(a.speed, b.speed);
+    a.acceleration = std::max(a.acceleration, b.acceleration);
+    return a;
+  };
+  BodyExtent extent = parallel::ordered_fold(model.bodies[at(body)].nodes, node_piece, BodyExtent{}, part_of, larger);
   extent.size = largest_edge(extent.box);
-  extent.speed = std::sqrt(speed2);
-  extent.acceleration = std::sqrt(acceleration2);
+  extent.speed = std::sqrt(extent.speed);
+  extent.acceleration = std::sqrt(extent.acceleration);
   for (const model::ContactSide& side : state.sides[at(body)]) {
     extent.box.include(state.motion[at(side.node)].position);
     extent.box.include(state.motion[at(model.triangle[at(side.element)][0])].position);

@@ -2,6 +2,7 @@
 #include "contact/candidates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "parallel/parallel.hpp"
@@ -20,17 +21,20 @@ constexpr double rounding = 1.0e-9;
 void CandidateSearch::assign(const model::Model& model, std::span<const Index> bodies) {
   nodes_.clear();
   elements_.clear();
-  reach_.clear();
   for (const Index index : bodies) {
     const model::Body& body = model.bodies[at(index)];
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
       nodes_.push_back(n);
-      reach_.push_back((model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)])) * (1.0 + rounding));
     }
     for (Index e = body.elements.begin; e < body.elements.end; ++e) {
       elements_.push_back(e);
     }
   }
+  reach_.resize(nodes_.size());
+  parallel::for_each(node_count(), point_grain, [&](Index i) {
+    const Index n = nodes_[at(i)];
+    reach_[at(i)] = (model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)])) * (1.0 + rounding);
+  });
   points_.resize(nodes_.size());
   pairs_.resize((elements_.size() + piece_elements - 1) / piece_elements);
 }
@@ -51,19 +55,21 @@ void CandidateSearch::query(const model::Model& model, const Positions& x, doubl
     for (Index k = piece * piece_elements; k < end; ++k) {
       const Index element = elements_[at(k)];
       const auto& t = model.triangle[at(element)];
+      const std::array<Vec3d, 3> corner{x(t[0]), x(t[1]), x(t[2])};
       Box box;
-      for (const Index n : t) {
-        box.include(x(n));
+      for (const Vec3d& p : corner) {
+        box.include(p);
       }
       box = box.grown((half_thickness_of(model, element) + skin) * (1.0 + rounding));
       tree_.query(box, [&](Index local) {
         const Index node = nodes_[at(local)];
-        const Vec3d& point = points_[at(local)];
-        if (!may_touch(model, node, element)) {
+        // Most of what lies in the box are the element's own corners.
+        if (node == t[0] || node == t[1] || node == t[2] || !may_touch(model, node, element)) {
           return;
         }
         const double watch = watch_distance(model, node, element) * (1.0 + rounding);
-        const double distance = std::sqrt(closest_on(model, x, element, point).distance2);
+        const double distance =
+            std::sqrt(physics::closest_point(points_[at(local)], corner[0], corner[1], corner[2]).distance2);
         const double slack = distance * (1.0 - rounding) - watch;
         if (slack <= skin) {
           pairs.push_back({local, element, slack});

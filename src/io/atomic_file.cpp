@@ -95,6 +95,10 @@ std::string read_whole(const std::filesystem::path& path) {
     fail(path, "read");
   }
   std::string text;
+  std::error_code none;
+  if (const auto size = std::filesystem::file_size(path, none); !none) {
+    text.reserve(size);  // Of a mesh file, so that it is not copied while it grows.
+  }
   char piece[65536];
   while (const std::size_t count = std::fread(piece, 1, sizeof(piece), file.get())) {
     text.append(piece, count);

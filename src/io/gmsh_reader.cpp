@@ -279,6 +279,7 @@ class GmshReader {
     }
     if (version_ == 2) {
       const std::size_t count = scanner_.count("the number of elements", 6);
+      builder_.reserve_triangles(std::min(count, MeshBuilder::most));
       for (std::size_t i = 0; i < count; ++i) {
         read_element_2();
       }
@@ -287,6 +288,7 @@ class GmshReader {
       const std::size_t count = scanner_.count("the number of elements", 4);
       static_cast<void>(scanner_.integer("the lowest element tag", 0, largest_tag));
       static_cast<void>(scanner_.integer("the highest element tag", 0, largest_tag));
+      builder_.reserve_triangles(std::min(count, MeshBuilder::most));
       std::size_t found = 0;
       for (std::size_t b = 0; b < blocks; ++b) {
         found += read_element_block();

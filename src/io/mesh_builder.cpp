@@ -50,6 +50,12 @@ std::size_t MeshBuilder::group(std::string_view name) {
   return groups_.size() - 1;
 }
 
+void MeshBuilder::reserve_triangles(std::size_t count) {
+  mesh_.triangle.reserve(count);
+  mesh_.part.reserve(count);
+  mesh_.triangle_label.reserve(count);
+}
+
 void MeshBuilder::add_triangle(Index a, Index b, Index c, Index part, std::int64_t label) {
   mesh_.triangle.push_back({a, b, c});
   mesh_.part.push_back(part);

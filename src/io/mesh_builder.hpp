@@ -28,6 +28,7 @@ class MeshBuilder {
   /// Index of the node group of that name, made when new.
   std::size_t group(std::string_view name);
   void add_to_group(std::size_t group, Index node) { groups_[group].nodes.push_back(node); }
+  void reserve_triangles(std::size_t count);
   void add_triangle(Index a, Index b, Index c, Index part, std::int64_t label);
   /// Two triangles, cut along the shorter diagonal (a-c when equal).
   void add_quadrilateral(Index a, Index b, Index c, Index d, Index part, std::int64_t label);

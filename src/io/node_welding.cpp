@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 
 namespace fexp::io {
@@ -61,7 +60,9 @@ class NodeGrid {
   }
   [[nodiscard]] std::array<std::int64_t, 3> cell(const Vec3d& p, double shift) const {
     const auto number = [&](double x, double low) {
-      return static_cast<std::int64_t>(std::floor((x + shift - low) / cell_size_));
+      const double cells = (x + shift - low) / cell_size_;
+      const auto whole = static_cast<std::int64_t>(cells);  // rounds towards zero
+      return static_cast<double>(whole) > cells ? whole - 1 : whole;
     };
     return {number(p.x, low_.x), number(p.y, low_.y), number(p.z, low_.z)};
   }

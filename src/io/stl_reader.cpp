@@ -35,6 +35,7 @@ struct Facets {
 model::Mesh welded_mesh(const Facets& facets, MeshBuilder& builder, double weld_tolerance) {
   WeldedNodes welded = weld_nodes(facets.corner, weld_tolerance);
   builder.position = std::move(welded.position);
+  builder.reserve_triangles(facets.label.size());
   for (std::size_t f = 0; f < facets.label.size(); ++f) {
     builder.add_triangle(welded.node[3 * f], welded.node[3 * f + 1], welded.node[3 * f + 2], facets.part[f],
                          facets.label[f]);

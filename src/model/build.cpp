@@ -100,11 +100,11 @@ void build_velocities(const Description& description, Model& model) {
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
       centre += (model.mass[at(n)] / body.mass) * model.reference_position[at(n)];
     }
-    for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
-      model.initial_velocity[at(n)] =
-          given.velocity + cross(given.angular_velocity, model.reference_position[at(n)] - centre);
-      model.initial_rotation_rate[at(n)] = given.angular_velocity;
-    }
+    parallel::for_each(body.nodes.size(), 4096, [&](Index i) {
+      const std::size_t n = at(body.nodes.begin + i);
+      model.initial_velocity[n] = given.velocity + cross(given.angular_velocity, model.reference_position[n] - centre);
+      model.initial_rotation_rate[n] = given.angular_velocity;
+    });
   });
 }
 

@@ -7,15 +7,19 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "base/trigonometry.hpp"
 #include "model/build_checks.hpp"
 #include "model/mesh_order.hpp"
 #include "model/topology.hpp"
+#include "parallel/parallel.hpp"
 
 namespace fexp::model {
 
 namespace {
+
+constexpr Index mesh_grain = 8192;
 
 /// A rotation made ready: Rodrigues' formula about an axis through a point.
 class Rotator {
@@ -105,43 +109,57 @@ std::vector<Index> part_sections(const Description& description, const BodyDescr
   return sections;
 }
 
-PlacedMesh place_mesh(const BodyDescription& body, const Mesh& mesh, const std::vector<Index>& sections) {
+PlacedMesh place_mesh(const BodyDescription& body, const Mesh& mesh, const Surface& surface,
+                      const std::vector<Index>& sections) {
   PlacedMesh placed;
-  placed.position.reserve(mesh.position.size());
+  placed.position.resize(mesh.position.size());
   const std::vector<Rotator> rotations(body.rotate.begin(), body.rotate.end());
-  for (const Vec3d& x : mesh.position) {
-    Vec3d p = body.scale * x;
+  parallel::for_each(static_cast<Index>(mesh.position.size()), mesh_grain, [&](Index n) {
+    Vec3d p = body.scale * mesh.position[at(n)];
     for (const Rotator& rotation : rotations) {
       p = rotation(p);
     }
-    placed.position.push_back(p + body.translate);
+    placed.position[at(n)] = p + body.translate;
+  });
+  std::vector<Index> order(surface.triangle.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto by_section = [&](Index a, Index b) {
+    return sections[at(mesh.part[at(a)])] < sections[at(mesh.part[at(b)])];
+  };
+  if (!std::is_sorted(order.begin(), order.end(), by_section)) {
+    std::stable_sort(order.begin(), order.end(), by_section);
   }
-  std::vector<Triangle> oriented = mesh.triangle;
-  orient_consistently(oriented);
-  std::vector<Index> order(oriented.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    order[i] = static_cast<Index>(i);
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return sections[at(mesh.part[at(a)])] < sections[at(mesh.part[at(b)])]; });
   for (auto begin = order.begin(); begin != order.end();) {
     const Index section = sections[at(mesh.part[at(*begin)])];
     const auto end =
         std::find_if(begin, order.end(), [&](Index t) { return sections[at(mesh.part[at(t)])] != section; });
-    order_by_place(placed.position, oriented, {begin, end});
+    order_by_place(placed.position, surface.triangle, {begin, end});
     begin = end;
   }
-  for (const Index t : order) {
-    Triangle nodes = oriented[at(t)];
-    if (body.flip_normals) {
-      std::swap(nodes[1], nodes[2]);
-    }
-    placed.triangle.push_back(nodes);
-    placed.part.push_back(mesh.part[at(t)]);
-    placed.section.push_back(sections[at(mesh.part[at(t)])]);
-    placed.label.push_back(mesh.triangle_label.empty() ? t : mesh.triangle_label[at(t)]);
+  std::vector<Index> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    place[at(order[i])] = static_cast<Index>(i);
   }
-  placed.neighbour = edge_neighbours(placed.triangle);
+  placed.triangle.resize(order.size());
+  placed.neighbour.resize(order.size());
+  placed.part.resize(order.size());
+  placed.section.resize(order.size());
+  placed.label.resize(order.size());
+  parallel::for_each(static_cast<Index>(order.size()), mesh_grain, [&](Index i) {
+    const Index t = order[at(i)];
+    Triangle nodes = surface.triangle[at(t)], neighbours = surface.neighbour[at(t)];
+    for (Index& neighbour : neighbours) {
+      neighbour = neighbour == no_index ? no_index : place[at(neighbour)];
+    }
+    if (body.flip_normals) {
+      turn(nodes, neighbours);
+    }
+    placed.triangle[at(i)] = nodes;
+    placed.neighbour[at(i)] = neighbours;
+    placed.part[at(i)] = mesh.part[at(t)];
+    placed.section[at(i)] = sections[at(mesh.part[at(t)])];
+    placed.label[at(i)] = mesh.triangle_label.empty() ? t : mesh.triangle_label[at(t)];
+  });
   return placed;
 }
 
@@ -166,10 +184,16 @@ void append_copy(const PlacedMesh& placed, const Mesh& mesh, const std::string& 
   body.description = description_index;
   const Index index = model.body_count(), first_node = model.node_count(), first_element = model.element_count();
   body.blocks.begin = model.block_count();
-  for (std::size_t n = 0; n < placed.position.size(); ++n) {
-    model.reference_position.push_back(placed.position[n] + shift);
-    model.node_body.push_back(index);
-    model.node_label.push_back(mesh.node_label.empty() ? static_cast<std::int64_t>(n) : mesh.node_label[n]);
+  for (const Vec3d& position : placed.position) {
+    model.reference_position.push_back(position + shift);
+  }
+  model.node_body.insert(model.node_body.end(), placed.position.size(), index);
+  if (mesh.node_label.empty()) {
+    for (std::size_t n = 0; n < placed.position.size(); ++n) {
+      model.node_label.push_back(static_cast<std::int64_t>(n));
+    }
+  } else {
+    model.node_label.insert(model.node_label.end(), mesh.node_label.begin(), mesh.node_label.end());
   }
   const auto offset = [](const Triangle& t, Index by) {
     Triangle moved = t;
@@ -181,9 +205,9 @@ void append_copy(const PlacedMesh& placed, const Mesh& mesh, const std::string& 
   for (std::size_t t = 0; t < placed.triangle.size(); ++t) {
     model.triangle.push_back(offset(placed.triangle[t], first_node));
     model.neighbour.push_back(offset(placed.neighbour[t], first_element));
-    model.element_part.push_back(placed.part[t]);
-    model.element_label.push_back(placed.label[t]);
   }
+  model.element_part.insert(model.element_part.end(), placed.part.begin(), placed.part.end());
+  model.element_label.insert(model.element_label.end(), placed.label.begin(), placed.label.end());
   append_blocks(placed, first_element, index, model);
   body.nodes = {first_node, model.node_count()};
   body.elements = {first_element, model.element_count()};
@@ -250,7 +274,7 @@ void build_bodies(const Description& description, std::span<const Mesh> meshes, 
     const BodyDescription& body = description.bodies[b];
     const Mesh& mesh = meshes[b];
     const std::size_t before = errors.size();
-    check_mesh(mesh, body.mesh_place, body.name, errors);
+    const Surface surface = check_mesh(mesh, body.mesh_place, body.name, errors);
     if (errors.size() != before) {
       continue;
     }
@@ -258,7 +282,7 @@ void build_bodies(const Description& description, std::span<const Mesh> meshes, 
     if (errors.size() != before) {
       continue;
     }
-    const PlacedMesh placed = place_mesh(body, mesh, sections);
+    const PlacedMesh placed = place_mesh(body, mesh, surface, sections);
     check_reach(body, mesh, placed, errors);
     const Array array = body.array.value_or(Array{});
     for (int k = 0; k < array.count[2]; ++k) {

@@ -4,10 +4,15 @@
 #include <algorithm>
 
 #include "model/patch_cut.hpp"
+#include "parallel/parallel.hpp"
 
 namespace fexp::model {
 
 namespace {
+
+/// Pieces larger than this are halved side by side.
+constexpr std::size_t serial_centres = 16384;
+constexpr Index centre_grain = 8192;
 
 struct Centre {
   Vec3d point;
@@ -35,8 +40,13 @@ void halve(std::span<Centre> centres, Index blocks, Index count, Index first, In
     // A total order, so that the same mesh is cut the same way everywhere.
     return a.point.*axis != b.point.*axis ? a.point.*axis < b.point.*axis : a.triangle < b.triangle;
   });
-  halve({centres.begin(), half}, blocks, count, first, middle);
-  halve({half, centres.end()}, blocks, count, middle, last);
+  parallel::for_each(2, centres.size() > serial_centres ? 1 : 2, [&](Index side) {
+    if (side == 0) {
+      halve({centres.begin(), half}, blocks, count, first, middle);
+    } else {
+      halve({half, centres.end()}, blocks, count, middle, last);
+    }
+  });
 }
 
 }  // namespace
@@ -47,13 +57,12 @@ void order_by_place(const std::vector<Vec3d>& position, const std::vector<Triang
   if (count < 2) {
     return;
   }
-  std::vector<Centre> centres;
-  centres.reserve(order.size());
-  for (const Index t : order) {
-    const Triangle& corners = triangle[at(t)];
+  std::vector<Centre> centres(order.size());
+  parallel::for_each(static_cast<Index>(order.size()), centre_grain, [&](Index i) {
+    const Triangle& corners = triangle[at(order[at(i)])];
     // Three times the centre, which is as good.
-    centres.push_back({position[at(corners[0])] + position[at(corners[1])] + position[at(corners[2])], t});
-  }
+    centres[at(i)] = {position[at(corners[0])] + position[at(corners[1])] + position[at(corners[2])], order[at(i)]};
+  });
   halve(centres, blocks, count, 0, count);
   std::ranges::transform(centres, order.begin(), &Centre::triangle);
 }

@@ -88,11 +88,11 @@ std::size_t row_offset(Index block, Index row) { return (at(block) * element_row
 
 State initial_state(const Model& model) {
   State state;
-  state.motion.resize(model.reference_position.size());
-  state.acceleration.resize(model.reference_position.size());
-  for (std::size_t n = 0; n < state.motion.size(); ++n) {
-    state.motion[n] = {model.reference_position[n], model.initial_velocity[n], model.initial_rotation_rate[n]};
+  state.motion.reserve(model.reference_position.size());
+  for (std::size_t n = 0; n < model.reference_position.size(); ++n) {
+    state.motion.push_back({model.reference_position[n], model.initial_velocity[n], model.initial_rotation_rate[n]});
   }
+  state.acceleration.resize(model.reference_position.size());
   for (const FixedNode& fixed : model.fixed) {
     NodeMotion& motion = state.motion[at(fixed.node)];
     double* const components[6] = {&motion.velocity.x,      &motion.velocity.y,      &motion.velocity.z,

@@ -7,33 +7,95 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
+
+#include "parallel/parallel.hpp"
 
 namespace fexp::model {
 
 namespace {
 
-/// An edge of a triangle, sortable by its nodes.
+/// An edge of a triangle.
 struct EdgeUse {
-  std::uint64_t key;  ///< Lower node in the high half, higher node in the low half.
-  Index corner;       ///< 3 x triangle + edge
+  Index low;     ///< The lower one of its nodes
+  Index high;    ///< The higher one
+  Index corner;  ///< 3 x triangle + edge
 
-  friend bool operator<(const EdgeUse& a, const EdgeUse& b) noexcept {
-    return a.key != b.key ? a.key < b.key : a.corner < b.corner;
-  }
+  [[nodiscard]] bool same_edge(const EdgeUse& other) const noexcept { return low == other.low && high == other.high; }
 };
 
+constexpr Index node_grain = 8192;
+constexpr Index edge_grain = 16384;
+
+/// All edges of all triangles by lower node, higher node and corner: counted into rows of the lower nodes, which are
+/// short and sorted each for itself.
 std::vector<EdgeUse> sorted_edges(std::span<const Triangle> triangles) {
-  std::vector<EdgeUse> edges;
-  edges.reserve(3 * triangles.size());
+  const auto nodes_of = [&](std::size_t t, std::size_t e) {
+    return std::minmax(triangles[t][e], triangles[t][(e + 1) % 3]);
+  };
+  Index highest = no_index;
+  for (const Triangle& t : triangles) {
+    highest = std::max({highest, t[0], t[1], t[2]});
+  }
+  std::vector<Index> start(at(highest) + 2, 0);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t e = 0; e < 3; ++e) {
-      const auto a = static_cast<std::uint64_t>(triangles[t][e]);
-      const auto b = static_cast<std::uint64_t>(triangles[t][(e + 1) % 3]);
-      edges.push_back({std::min(a, b) << 32U | std::max(a, b), static_cast<Index>(3 * t + e)});
+      ++start[at(nodes_of(t, e).first) + 1];
     }
   }
-  std::sort(edges.begin(), edges.end());
+  for (std::size_t n = 1; n < start.size(); ++n) {
+    start[n] += start[n - 1];
+  }
+  std::vector<EdgeUse> edges(3 * triangles.size());
+  std::vector<Index> next(start.begin(), start.end() - 1);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t e = 0; e < 3; ++e) {
+      const auto [low, high] = nodes_of(t, e);
+      edges[at(next[at(low)]++)] = {low, high, static_cast<Index>(3 * t + e)};
+    }
+  }
+  parallel::for_each(highest + 1, node_grain, [&](Index n) {
+    std::sort(edges.begin() + start[at(n)], edges.begin() + start[at(n) + 1], [](const EdgeUse& x, const EdgeUse& y) {
+      return x.high != y.high ? x.high < y.high : x.corner < y.corner;
+    });
+  });
   return edges;
+}
+
+std::vector<Triangle> neighbours_across(std::size_t triangles, const std::vector<EdgeUse>& edges) {
+  std::vector<Triangle> neighbours(triangles, {no_index, no_index, no_index});
+  parallel::for_each(static_cast<Index>(edges.size()) - 1, edge_grain, [&](Index i) {
+    if (edges[at(i)].same_edge(edges[at(i) + 1])) {
+      const Index a = edges[at(i)].corner, b = edges[at(i) + 1].corner;
+      neighbours[at(a / 3)][at(a % 3)] = b / 3;
+      neighbours[at(b / 3)][at(b % 3)] = a / 3;
+    }
+  });
+  return neighbours;
+}
+
+/// Whether the triangle goes from node a to node b along one of its edges.
+bool runs_along(const Triangle& triangle, Index a, Index b) noexcept {
+  return (triangle[0] == a && triangle[1] == b) || (triangle[1] == a && triangle[2] == b) ||
+         (triangle[2] == a && triangle[0] == b);
+}
+
+/// Whether all neighbours agree about the side already, as in most meshes.
+bool is_consistent(const std::vector<Triangle>& triangles, const std::vector<Triangle>& neighbours) {
+  const IndexRange all{0, static_cast<Index>(triangles.size())};
+  const auto agree = [&](Index begin, Index end) {
+    bool good = true;
+    for (Index t = begin; t < end; ++t) {
+      for (std::size_t e = 0; e < 3; ++e) {
+        const Index other = neighbours[at(t)][e];
+        good = good && (other == no_index ||
+                        !runs_along(triangles[at(other)], triangles[at(t)][e], triangles[at(t)][(e + 1) % 3]));
+      }
+    }
+    return static_cast<char>(good);
+  };
+  return parallel::ordered_fold(all, edge_grain, char{1}, agree,
+                                [](char a, char b) { return static_cast<char>(a != 0 && b != 0); }) != 0;
 }
 
 std::string triangle_name(const Mesh& mesh, std::size_t t) {
@@ -94,7 +156,7 @@ std::vector<std::string> duplicate_triangles(const Mesh& mesh, const std::vector
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
     const Index a = edges[i].corner, b = edges[i + 1].corner;
     // Such a pair meets at three edges; it is named at the first triangle's first edge.
-    if (edges[i].key == edges[i + 1].key && a % 3 == 0 && a / 3 != b / 3 && opposite(a) == opposite(b)) {
+    if (edges[i].same_edge(edges[i + 1]) && a % 3 == 0 && a / 3 != b / 3 && opposite(a) == opposite(b)) {
       names.push_back(fmt::format("{} = {}", triangle_name(mesh, at(a / 3)), triangle_name(mesh, at(b / 3))));
     }
   }
@@ -105,7 +167,7 @@ std::vector<std::string> duplicate_triangles(const Mesh& mesh, const std::vector
 std::vector<std::string> crowded_edges(const Mesh& mesh, const std::vector<EdgeUse>& edges) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i + 2 < edges.size(); ++i) {
-    if (edges[i].key == edges[i + 2].key && (i == 0 || edges[i - 1].key != edges[i].key)) {
+    if (edges[i].same_edge(edges[i + 2]) && (i == 0 || !edges[i - 1].same_edge(edges[i]))) {
       names.push_back(fmt::format("{}-{}-{}", triangle_name(mesh, at(edges[i].corner / 3)),
                                   triangle_name(mesh, at(edges[i + 1].corner / 3)),
                                   triangle_name(mesh, at(edges[i + 2].corner / 3))));
@@ -117,16 +179,7 @@ std::vector<std::string> crowded_edges(const Mesh& mesh, const std::vector<EdgeU
 }  // namespace
 
 std::vector<Triangle> edge_neighbours(std::span<const Triangle> triangles) {
-  std::vector<Triangle> neighbours(triangles.size(), {no_index, no_index, no_index});
-  const std::vector<EdgeUse> edges = sorted_edges(triangles);
-  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    if (edges[i].key == edges[i + 1].key) {
-      const Index a = edges[i].corner, b = edges[i + 1].corner;
-      neighbours[at(a / 3)][at(a % 3)] = b / 3;
-      neighbours[at(b / 3)][at(b % 3)] = a / 3;
-    }
-  }
-  return neighbours;
+  return neighbours_across(triangles.size(), sorted_edges(triangles));
 }
 
 std::vector<Index> boundary_nodes(std::span<const Triangle> triangles, std::span<const Triangle> neighbours) {
@@ -165,19 +218,12 @@ CornerRows corner_rows(Index nodes, std::span<const Triangle> triangles) {
   return rows;
 }
 
-bool orient_consistently(std::vector<Triangle>& triangles) {
-  const std::vector<Triangle> neighbours = edge_neighbours(triangles);
+bool orient_consistently(std::vector<Triangle>& triangles, std::vector<Triangle>& neighbours) {
+  if (is_consistent(triangles, neighbours)) {
+    return true;
+  }
   std::vector<char> seen(triangles.size(), 0);
   std::vector<std::size_t> stack;
-  const auto uses_edge_forwards = [&](std::size_t t, Index a, Index b) {
-    for (std::size_t e = 0; e < 3; ++e) {
-      if (triangles[t][e] == a && triangles[t][(e + 1) % 3] == b) {
-        return true;
-      }
-    }
-    return false;
-  };
-  // Neighbours are found by edge, and turning a triangle reorders its edges, so they are looked up by node pair.
   for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
     if (seen[seed] != 0) {
       continue;
@@ -187,21 +233,17 @@ bool orient_consistently(std::vector<Triangle>& triangles) {
     while (!stack.empty()) {
       const std::size_t t = stack.back();
       stack.pop_back();
-      for (const Index other : neighbours[t]) {
+      for (std::size_t e = 0; e < 3; ++e) {
+        const Index other = neighbours[t][e];
         if (other == no_index) {
           continue;
         }
         const std::size_t o = at(other);
-        for (std::size_t e = 0; e < 3; ++e) {
-          const Index a = triangles[t][e], b = triangles[t][(e + 1) % 3];
-          const bool same = uses_edge_forwards(o, a, b);
-          if (!same) {
-            continue;
-          }
+        if (runs_along(triangles[o], triangles[t][e], triangles[t][(e + 1) % 3])) {
           if (seen[o] != 0) {
             return false;
           }
-          std::swap(triangles[o][1], triangles[o][2]);
+          turn(triangles[o], neighbours[o]);
         }
         if (seen[o] == 0) {
           seen[o] = 1;
@@ -213,17 +255,22 @@ bool orient_consistently(std::vector<Triangle>& triangles) {
   return true;
 }
 
-void check_mesh(const Mesh& mesh, const Place& place, std::string_view body, ErrorList& errors) {
+void turn(Triangle& triangle, Triangle& neighbours) noexcept {
+  std::swap(triangle[1], triangle[2]);
+  std::swap(neighbours[0], neighbours[2]);
+}
+
+Surface check_mesh(const Mesh& mesh, const Place& place, std::string_view body, ErrorList& errors) {
   const auto add = [&](std::string message, std::string accepted, std::string cure) {
     errors.add(place, fmt::format("mesh of body \"{}\": {}", body, message), std::move(accepted), std::move(cure));
   };
   if (mesh.triangle.empty()) {
     add("it has no triangles", "at least one triangle", "export surface triangles, not only points or lines");
-    return;
+    return {};
   }
   const std::size_t before = errors.size();
   if (!numbers_make_sense(mesh, add)) {
-    return;
+    return {};
   }
   std::vector<std::string> repeated, degenerate;
   for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
@@ -241,7 +288,7 @@ void check_mesh(const Mesh& mesh, const Place& place, std::string_view body, Err
   if (!repeated.empty()) {
     add(fmt::format("{} degenerate triangle(s) with a repeated node: {}", repeated.size(), named(repeated)),
         "three different nodes", "remove them, or lower the weld tolerance");
-    return;  // their edges would be reported as crowded too
+    return {};  // their edges would be reported as crowded too
   }
   const std::vector<EdgeUse> edges = sorted_edges(mesh.triangle);
   if (const auto twice = duplicate_triangles(mesh, edges); !twice.empty()) {
@@ -253,13 +300,16 @@ void check_mesh(const Mesh& mesh, const Place& place, std::string_view body, Err
                     named(crowded)),
         "at most two triangles at an edge", "remove duplicate triangles, or split the parts into separate bodies");
   }
-  if (errors.size() == before) {
-    std::vector<Triangle> copy = mesh.triangle;
-    if (!orient_consistently(copy)) {
-      add("its triangles cannot be given a common side (it is a Moebius strip)", "an orientable surface",
-          "cut the surface along a line");
-    }
+  if (errors.size() != before) {
+    return {};
   }
+  Surface surface{mesh.triangle, neighbours_across(mesh.triangle.size(), edges)};
+  if (!orient_consistently(surface.triangle, surface.neighbour)) {
+    add("its triangles cannot be given a common side (it is a Moebius strip)", "an orientable surface",
+        "cut the surface along a line");
+    return {};
+  }
+  return surface;
 }
 
 }  // namespace fexp::model

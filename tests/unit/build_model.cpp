@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "model/topology.hpp"
 #include "parallel/parallel.hpp"
 #include "physics/critical_step.hpp"
 #include "support/descriptions.hpp"
@@ -263,6 +264,7 @@ TEST(build_model, flipping_turns_every_normal_and_nothing_else) {
     EXPECT_LT(dot(normal(plain), normal(flipped)), 0.0);
     EXPECT_EQ(plain.reference_area[at(e)] > 0.0, flipped.reference_area[at(e)] > 0.0);
   }
+  EXPECT_EQ(flipped.neighbour, edge_neighbours(flipped.triangle));
 }
 
 TEST(build_model, spin_about_the_centre_of_mass_adds_no_momentum) {
@@ -286,12 +288,17 @@ TEST(build_model, spin_about_the_centre_of_mass_adds_no_momentum) {
 }
 
 TEST(build_model, is_the_same_for_any_number_of_threads) {
-  Description d = one_body(Plate{3.0, 2.0, 60, 50, "alternating"});
+  Description d = one_body(Plate{3.0, 2.0, 200, 150, "alternating"});
   d.bodies[0].rotate = {{{1.0, 2.0, 3.0}, 25.0, {}}};
   d.bodies[0].angular_velocity = {1.0, 2.0, 3.0};
   Model one, two;
   parallel::with_threads(1, [&] { one = build(d); });
   parallel::with_threads(2, [&] { two = build(d); });
+  EXPECT_EQ(one.reference_position, two.reference_position);
+  EXPECT_EQ(one.triangle, two.triangle);
+  EXPECT_EQ(one.neighbour, two.neighbour);
+  EXPECT_EQ(one.neighbour, edge_neighbours(one.triangle));
+  EXPECT_EQ(one.corner, two.corner);
   EXPECT_EQ(one.mass, two.mass);
   EXPECT_EQ(one.inertia, two.inertia);
   EXPECT_EQ(one.contact_stiffness, two.contact_stiffness);

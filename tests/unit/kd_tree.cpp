@@ -74,7 +74,7 @@ void check(const std::vector<Vec3d>& points, unsigned seed) {
 
 TEST(kd_tree, finds_what_a_loop_over_all_points_finds) {
   Dice dice(1);
-  for (const int count : {0, 1, 2, 11, 12, 13, 23, 24, 25, 26, 47, 48, 49, 100, 1000, 5000}) {
+  for (const int count : {0, 1, 2, 7, 8, 9, 15, 16, 17, 18, 31, 32, 33, 100, 1000, 5000}) {
     std::vector<Vec3d> points;
     for (int i = 0; i < count; ++i) {
       points.push_back(dice.point());
@@ -96,6 +96,21 @@ TEST(kd_tree, finds_all_of_many_points_in_one_place_on_a_line_and_on_a_grid) {
   check(line, 21);
   check(grid, 22);
   check(twice, 23);
+}
+
+TEST(kd_tree, finds_points_that_single_precision_cannot_tell_apart) {
+  Dice dice(5);
+  std::vector<Vec3d> points;
+  for (int i = 0; i < 1000; ++i) {
+    points.push_back(1e-12 * dice.point());
+  }
+  points.push_back({1.0, -1.0, 1e80});
+  points.push_back({-1e-300, 0.0, -1e80});
+  check(points, 40);
+  for (Vec3d& p : points) {
+    p = {1e6 + 1e-9 * p.x, 0.0, 0.0};
+  }
+  check(points, 41);
 }
 
 TEST(kd_tree, finds_the_points_whose_own_reach_meets_the_box) {

@@ -121,7 +121,8 @@ TEST(mesh_generators, every_mesh_passes_the_checks_has_its_topology_and_one_side
     EXPECT_EQ(euler_characteristic(mesh), c.euler) << "generator " << c.generator.index();
     EXPECT_EQ(boundary_nodes(mesh.triangle, edge_neighbours(mesh.triangle)).empty(), c.closed);
     std::vector<Triangle> oriented = mesh.triangle;
-    ASSERT_TRUE(orient_consistently(oriented));
+    std::vector<Triangle> neighbours = edge_neighbours(oriented);
+    ASSERT_TRUE(orient_consistently(oriented, neighbours));
     EXPECT_EQ(oriented, mesh.triangle) << "generator " << c.generator.index();
   }
 }

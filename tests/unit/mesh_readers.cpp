@@ -128,7 +128,7 @@ TEST(mesh_readers, the_example_profile_is_one_sheet_with_one_hole_and_its_groups
   }
   EXPECT_GE(nodes_of_group(mesh, "clamped_end").size(), 10U);
   EXPECT_GE(nodes_of_group(mesh, "hole").size(), 6U);
-  const auto neighbours = model::edge_neighbours(mesh.triangle);
+  auto neighbours = model::edge_neighbours(mesh.triangle);
   long free_edges = 0;
   for (const model::Triangle& n : neighbours) {
     free_edges += std::count(n.begin(), n.end(), no_index);
@@ -137,7 +137,7 @@ TEST(mesh_readers, the_example_profile_is_one_sheet_with_one_hole_and_its_groups
   const long edges = (3 * triangles + free_edges) / 2;
   EXPECT_EQ(static_cast<long>(mesh.position.size()) - edges + triangles, 0);
   std::vector<model::Triangle> oriented = mesh.triangle;
-  EXPECT_TRUE(model::orient_consistently(oriented));
+  EXPECT_TRUE(model::orient_consistently(oriented, neighbours));
   EXPECT_EQ(oriented, mesh.triangle);
 }
 

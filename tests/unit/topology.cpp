@@ -100,17 +100,19 @@ TEST(topology, turned_triangles_are_turned_back_to_agree_with_the_first_of_their
     }
   }
   ASSERT_NE(mixed, mesh.triangle);
-  ASSERT_TRUE(orient_consistently(mixed));
-  for (std::size_t t = 0; t < mixed.size(); ++t) {
-    const Vec3d &a = mesh.position[at(mixed[t][0])], &b = mesh.position[at(mixed[t][1])],
-                &c = mesh.position[at(mixed[t][2])];
+  std::vector<Triangle> neighbours = edge_neighbours(mixed);
+  ASSERT_TRUE(orient_consistently(mixed, neighbours));
+  EXPECT_EQ(neighbours, edge_neighbours(mixed));
+  for (const Triangle& t : mixed) {
+    const Vec3d &a = mesh.position[at(t[0])], &b = mesh.position[at(t[1])], &c = mesh.position[at(t[2])];
     EXPECT_GT(dot(cross(b - a, c - a), a + b + c), 0.0);
   }
 }
 
 TEST(topology, each_separate_piece_keeps_the_side_of_its_own_first_triangle) {
   std::vector<Triangle> triangles{{0, 1, 2}, {0, 3, 2}, {4, 6, 5}, {4, 6, 7}};
-  ASSERT_TRUE(orient_consistently(triangles));
+  std::vector<Triangle> neighbours = edge_neighbours(triangles);
+  ASSERT_TRUE(orient_consistently(triangles, neighbours));
   EXPECT_EQ(triangles[0], (Triangle{0, 1, 2}));
   EXPECT_EQ(triangles[2], (Triangle{4, 6, 5}));
   EXPECT_EQ(triangles[1], (Triangle{0, 2, 3}));

@@ -107,9 +107,14 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
       if (!workspace.load.empty()) {
         load_nodes(step);
       }
-      advance_pieces(step, Pass::accelerate);
+      // Held nodes are seen to before velocities change.
+      const bool held = !model.fixed.empty() || !model.symmetry.empty() || !model.prescribed.empty();
+      advance_pieces(step, held ? Pass::accelerate : Pass::accelerate_and_close);
       act_on_bodies(step);
-      closing_half(step);
+      if (held) {
+        close_pieces(step);
+      }
+      book_closing_half(step);
     } else {
       advance_pieces(step, opened ? Pass::close_and_open : Pass::close);
     }
@@ -177,28 +182,38 @@ void IslandSolver::opening_half(const Step& step) {
   }
   const auto count = static_cast<Index>(pieces_.size());
   const Index pieces_per_task = grain(pieces_.size(), nodes_, task_nodes);
+  // One pass over the nodes unless prescribed velocities come in between.
+  const bool in_one = step.model.prescribed.empty();
   parallel::for_each(count, pieces_per_task, [&](Index i) {
     partials_[at(i)] = {};
     kick(step, pieces_[at(i)], partials_[at(i)]);
-  });
-  prescribe(step, HalfStep::opening);
-  parallel::for_each(count, pieces_per_task, [&](Index p) {
-    const Piece& piece = pieces_[at(p)];
-    Partial& partial = partials_[at(p)];
-    double largest = 0.0;
-    for (Index i = piece.nodes.begin; i < piece.nodes.end; ++i) {
-      const Index n = piece.node[i];
-      model::NodeMotion& motion = step.state.motion[at(n)];
-      if (!step.workspace.load.empty()) {
-        const NodalAction& load = step.workspace.load[at(n)];
-        partial.external_work += half * (dot(load.force, motion.velocity) + dot(load.moment, motion.rotation_rate));
-      }
-      motion.position += step.dt * motion.velocity;
-      const double speed2 = dot(motion.velocity, motion.velocity);
-      largest = speed2 > largest ? speed2 : largest;
+    if (in_one) {
+      move(step, pieces_[at(i)], partials_[at(i)]);
     }
-    partial.largest_speed2 = largest;
   });
+  if (in_one) {
+    return;
+  }
+  prescribe(step, HalfStep::opening);
+  parallel::for_each(count, pieces_per_task, [&](Index i) { move(step, pieces_[at(i)], partials_[at(i)]); });
+}
+
+/// The motion of a step, and the work that loads do in its first half.
+void IslandSolver::move(const Step& step, const Piece& piece, Partial& partial) {
+  const double half = step.half_dt();
+  double largest = 0.0;
+  for (Index i = piece.nodes.begin; i < piece.nodes.end; ++i) {
+    const Index n = piece.node[i];
+    model::NodeMotion& motion = step.state.motion[at(n)];
+    if (!step.workspace.load.empty()) {
+      const NodalAction& load = step.workspace.load[at(n)];
+      partial.external_work += half * (dot(load.force, motion.velocity) + dot(load.moment, motion.rotation_rate));
+    }
+    motion.position += step.dt * motion.velocity;
+    const double speed2 = dot(motion.velocity, motion.velocity);
+    largest = speed2 > largest ? speed2 : largest;
+  }
+  partial.largest_speed2 = largest;
 }
 
 void IslandSolver::prescribe(const Step& step, HalfStep half) {
@@ -339,8 +354,11 @@ NodeKernelArguments IslandSolver::node_arguments(const Step& step, Pass pass) co
 
 void IslandSolver::advance_nodes(const Step& step, Pass pass, const NodeKernelArguments& arguments, std::size_t index) {
   const Piece& piece = pieces_[index];
-  if (pass == Pass::accelerate) {
+  if (pass == Pass::accelerate || pass == Pass::accelerate_and_close) {
     accelerate(step, arguments, index);
+    if (pass == Pass::accelerate_and_close) {
+      close(step, index);
+    }
     return;
   }
   const NodeKernelReport report =
@@ -433,13 +451,20 @@ void IslandSolver::act_on_bodies(const Step& step) {
   }
 }
 
-/// The closing half step where something acts from outside.
-void IslandSolver::closing_half(const Step& step) {
-  parallel::for_each(static_cast<Index>(pieces_.size()), grain(pieces_.size(), nodes_, task_nodes), [&](Index i) {
-    partials_[at(i)].finite = true;
-    kick(step, pieces_[at(i)], partials_[at(i)]);
-    partials_[at(i)].closing_finite = partials_[at(i)].finite;
-  });
+/// The closing half step of one piece where something acts from outside.
+void IslandSolver::close(const Step& step, std::size_t piece) {
+  partials_[piece].finite = true;
+  kick(step, pieces_[piece], partials_[piece]);
+  partials_[piece].closing_finite = partials_[piece].finite;
+}
+
+void IslandSolver::close_pieces(const Step& step) {
+  parallel::for_each(static_cast<Index>(pieces_.size()), grain(pieces_.size(), nodes_, task_nodes),
+                     [&](Index i) { close(step, at(i)); });
+}
+
+/// What follows the closing half steps of all pieces: prescribed velocities, and the bodies' books.
+void IslandSolver::book_closing_half(const Step& step) {
   prescribe(step, HalfStep::closing);
   const double half = step.half_dt();
   std::size_t piece = 0;

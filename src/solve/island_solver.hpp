@@ -92,9 +92,10 @@ class IslandSolver {
     Vec3d impulse;
     Vec3d angular_impulse;
   };
-  /// What follows the element forces: accelerations alone, as something acts from outside that has to be seen to; the
-  /// closing half step, too; or that and the opening half and the motion of the next step.
-  enum class Pass { accelerate, close, close_and_open };
+  /// What follows the element forces. Where something acts from outside: accelerations, with the closing half step
+  /// unless nodes are held that have to be seen to before. Elsewhere: both, and where the next step follows at once its
+  /// opening half and motion, too.
+  enum class Pass { accelerate, accelerate_and_close, close, close_and_open };
 
   struct Step;  // operands of one step, defined with the passes
 
@@ -106,7 +107,10 @@ class IslandSolver {
   void advance_nodes(const Step& step, Pass pass, const NodeKernelArguments& arguments, std::size_t index);
   void accelerate(const Step& step, const NodeKernelArguments& k, std::size_t index);
   void act_on_bodies(const Step& step);
-  void closing_half(const Step& step);
+  void close(const Step& step, std::size_t piece);
+  void close_pieces(const Step& step);
+  void book_closing_half(const Step& step);
+  static void move(const Step& step, const Piece& piece, Partial& partial);
   static void kick(const Step& step, const Piece& piece, Partial& partial);
   void prescribe(const Step& step, HalfStep half);
   [[nodiscard]] NodeKernelArguments node_arguments(const Step& step, Pass pass) const;

@@ -24,8 +24,8 @@ Model two_plates() {
 }
 
 /// Records of doubles alone as the doubles they are.
-template <class Record>
-double* numbers(std::vector<Record>& records) {
+template <class Records>
+double* numbers(Records& records) {
   return reinterpret_cast<double*>(records.data());
 }
 

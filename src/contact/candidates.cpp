@@ -21,8 +21,10 @@ constexpr double rounding = 1.0e-9;
 void CandidateSearch::assign(const model::Model& model, std::span<const Index> bodies) {
   nodes_.clear();
   elements_.clear();
+  barriers_ = false;
   for (const Index index : bodies) {
     const model::Body& body = model.bodies[at(index)];
+    barriers_ = barriers_ || body.barrier;
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
       nodes_.push_back(n);
     }
@@ -42,9 +44,42 @@ void CandidateSearch::assign(const model::Model& model, std::span<const Index> b
 void CandidateSearch::search(const model::Model& model, const Positions& x, double skin,
                              std::span<const Index> remembered, Candidates& found) {
   parallel::for_each(node_count(), point_grain, [&](Index i) { points_[at(i)] = x(nodes_[at(i)]); });
-  tree_.build(points_, reach_);
+  if (barriers_) {
+    take_points(model, skin);
+    tree_.build(near_points_, near_reach_);
+  } else {
+    tree_.build(points_, reach_);
+  }
   query(model, x, skin);
   fill_rows(remembered, found);
+}
+
+/// Barriers do not touch each other: of their nodes only those near other bodies are looked for. A barrier may be far
+/// larger than the island.
+void CandidateSearch::take_points(const model::Model& model, double skin) {
+  const auto is_free = [&](std::size_t i) { return !model.bodies[at(model.node_body[at(nodes_[i])])].barrier; };
+  free_ = {};
+  Box corners;
+  double thickest = 0.0, farthest = 0.0;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (is_free(i)) {
+      corners.include(points_[i]);
+      thickest = std::max(thickest, model.half_thickness[at(nodes_[i])]);
+      farthest = std::max(farthest, reach_[i]);
+    }
+  }
+  free_ = corners.grown(farthest * (1.0 + rounding));
+  const Box touched = corners.grown((thickest + skin) * (1.0 + 2.0 * rounding));
+  near_.clear();
+  near_points_.clear();
+  near_reach_.clear();
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (is_free(i) || touched.grown(reach_[i]).contains(points_[i])) {
+      near_.push_back(static_cast<Index>(i));
+      near_points_.push_back(points_[i]);
+      near_reach_.push_back(reach_[i]);
+    }
+  }
 }
 
 void CandidateSearch::query(const model::Model& model, const Positions& x, double skin) {
@@ -61,7 +96,11 @@ void CandidateSearch::query(const model::Model& model, const Positions& x, doubl
         box.include(p);
       }
       box = box.grown((half_thickness_of(model, element) + skin) * (1.0 + rounding));
-      tree_.query(box, [&](Index local) {
+      if (barriers_ && !free_.overlaps(box) && model.bodies[at(body_of_element(model, element))].barrier) {
+        continue;
+      }
+      tree_.query(box, [&](Index point) {
+        const Index local = barriers_ ? near_[at(point)] : point;
         const Index node = nodes_[at(local)];
         // Most of what lies in the box are the element's own corners.
         if (node == t[0] || node == t[1] || node == t[2] || !may_touch(model, node, element)) {

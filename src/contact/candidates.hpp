@@ -40,6 +40,7 @@ class CandidateSearch {
     double slack;
   };
 
+  void take_points(const model::Model& model, double skin);
   void query(const model::Model& model, const Positions& x, double skin);
   void fill_rows(std::span<const Index> remembered, Candidates& found);
 
@@ -48,6 +49,11 @@ class CandidateSearch {
   std::vector<Vec3d> points_;    // [nodes_]
   std::vector<double> reach_;    // [nodes_]: half thickness and watch margin [length]
   std::vector<Index> row_size_;  // [nodes_]
+  bool barriers_{};              // Some of the bodies are
+  Box free_;                     // What the nodes of the other bodies reach
+  std::vector<Index> near_;      // Into nodes_: those in the tree, where some are barriers'; else empty
+  std::vector<Vec3d> near_points_;
+  std::vector<double> near_reach_;
   KdTree tree_;
   std::vector<std::vector<Pair>> pairs_;  // By piece of elements_
 };

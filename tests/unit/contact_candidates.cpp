@@ -87,6 +87,33 @@ TEST(candidates, are_those_of_a_loop_over_all_pairs) {
   }
 }
 
+/// A barrier that is far larger than what is near it: in the middle, across its rim, and out of reach.
+TEST(candidates, of_a_barrier_are_those_of_a_loop_over_all_pairs) {
+  auto d = test::description(test::rubber, 0.05);
+  d.contact.enabled = true;
+  test::add_body(d, "floor", test::plate(8.0, 8.0, 24, 24)).translate = {-4.0, -4.0, 0.0};
+  test::add_body(d, "wall", test::plate(8.0, 3.0, 16, 6)).translate = {-4.0, -4.0, 0.02};
+  test::add_body(d, "ball", model::CubedSphere{0.5, 4}).translate = {0.0, 0.0, 0.55};
+  model::Model model = test::build(d);
+  model.bodies[0].barrier = true;
+  model.bodies[1].barrier = true;
+  CandidateSearch search;
+  search.assign(model, all_bodies(model));
+  const model::State built = model::initial_state(model);
+  for (const Vec3d& shift : {Vec3d{}, Vec3d{4.3, 0.0, -0.4}, Vec3d{0.0, -4.0, 0.0}, Vec3d{0.0, 0.0, 9.0}}) {
+    model::State state = built;
+    for (Index n = model.bodies[2].nodes.begin; n < model.bodies[2].nodes.end; ++n) {
+      state.motion[at(n)].position += shift;
+    }
+    const Positions x{state.motion.data(), 0.0};
+    for (const double skin : {0.0, 0.1, 1.0}) {
+      Candidates found;
+      search.search(model, x, skin, {}, found);
+      EXPECT_EQ(pairs_of(found), slow_pairs(model, x, skin)) << shift.x << ", " << shift.y << ", " << skin;
+    }
+  }
+}
+
 TEST(candidates, ascend_and_give_remembered_nodes_a_row_and_each_row_the_slack_of_its_nearest_pair) {
   const model::Model model = bodies_of_all_sizes(true, false);
   CandidateSearch search;

@@ -74,7 +74,7 @@ void candidate_search(benchmark::State& state) {
   fexp::parallel::with_threads(static_cast<int>(state.range(1)), [&] {
     contact::CandidateSearch search;
     const std::vector<Index> bodies{0};
-    const std::vector<model::NodeMotion> motion = model::initial_state(scene.sphere).motion;
+    const auto motion = model::initial_state(scene.sphere).motion;
     search.assign(scene.sphere, bodies);
     for (auto iteration : state) {
       search.search(scene.sphere, {motion.data(), 0.0}, scene.skin, {}, found);

@@ -57,6 +57,17 @@ model::BodyDescription plate(Index elements) {
   return made;
 }
 
+/// Gravity, and the edge at the low end of x held.
+void hold(model::Description& d) {
+  d.bodies.back().angular_velocity = {};
+  model::NodeSet edge;
+  edge.name = "edge";
+  edge.box = model::BoxSelection{{-1.0e-6, -1.0, -1.0}, {1.0e-6, 2.0, 1.0}};
+  d.node_sets.push_back(edge);
+  d.fixed.emplace_back().set = "edge";
+  d.gravity.emplace_back().acceleration = {0.0, 0.0, -9.81};
+}
+
 model::BodyDescription spheres(const std::string& name, Index copies, const Vec3d& pitch) {
   model::BodyDescription made = body(name, model::CubedSphere{sphere_radius, sphere_cells});
   made.array = grid(copies, pitch);
@@ -81,12 +92,15 @@ model::BodyDescription body(const std::string& name, const model::MeshGenerator&
 
 model::Model build(Scene scene, Index elements) {
   constexpr double diameter = 2.0 * sphere_radius;
-  const bool is_plate = scene == Scene::plate || scene == Scene::quiet_plate;
+  const bool is_plate = scene == Scene::plate || scene == Scene::quiet_plate || scene == Scene::held_plate;
   const double thickness = relative_thickness * (is_plate ? 1.0 / plate_cells(elements) : sphere_width(sphere_cells));
   model::Description d = description(thickness);
-  d.contact.enabled = scene != Scene::plate;
+  d.contact.enabled = scene != Scene::plate && scene != Scene::held_plate;
   if (is_plate) {
     d.bodies.push_back(plate(elements));
+    if (scene == Scene::held_plate) {
+      hold(d);
+    }
   } else if (scene == Scene::separate_spheres) {
     const double pitch = 1.3 * diameter;
     d.bodies.push_back(spheres("sphere", elements / sphere_elements, {pitch, pitch, pitch}));

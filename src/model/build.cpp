@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/pack.hpp"
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
 #include "model/node_sets.hpp"
@@ -37,28 +38,55 @@ void build_sections(const Description& description, Model& model) {
   }
 }
 
+/// What elements bring to the nodes at their corners, and their critical steps, shape [elements] each.
+struct ElementShares {
+  explicit ElementShares(std::size_t elements) : mass(elements), inertia(elements), step(elements) {}
+
+  std::vector<double> mass;     // Of one corner [mass]
+  std::vector<double> inertia;  // Of one corner [mass*length^2]
+  std::vector<double> step;     // [time]
+};
+
+/// The elements of one block side by side, as the roots of a critical step are found one after the other.
+void share_block(const ElementBlock& block, Model& model, ElementShares& shares) {
+  using Lanes = Pack<block_lanes>;
+  Vec3<Lanes> side_12, side_13;
+  for (Index lane = 0; lane < block_lanes; ++lane) {
+    const Triangle& t = model.triangle[at(block.first + std::min(lane, block.count - 1))];
+    const Vec3d& origin = model.reference_position[at(t[0])];
+    const Vec3d a = model.reference_position[at(t[1])] - origin, b = model.reference_position[at(t[2])] - origin;
+    side_12.x.set_lane(lane, a.x);
+    side_12.y.set_lane(lane, a.y);
+    side_12.z.set_lane(lane, a.z);
+    side_13.x.set_lane(lane, b.x);
+    side_13.y.set_lane(lane, b.y);
+    side_13.z.set_lane(lane, b.z);
+  }
+  const auto frame = physics::triangle_frame(side_12, side_13);
+  const SectionData& section = model.sections[at(block.section)];
+  const Lanes step =
+      physics::element_critical_step({section.thickness, section.moduli, model.run.drilling}, section.density, frame);
+  for (Index lane = 0; lane < block.count; ++lane) {
+    const std::size_t e = at(block.first + lane);
+    const double area = 0.5 * frame.doubled_area.lane(lane);
+    model.reference_area[e] = area;
+    shares.mass[e] = physics::corner_mass(section.density, section.thickness, area);
+    shares.inertia[e] = physics::corner_inertia(shares.mass[e], section.thickness, area);
+    shares.step[e] = step.lane(lane);
+  }
+}
+
 /// Lumped masses and inertias, areas, half thicknesses and penalty stiffnesses; each node gathers its own corners.
 void build_masses(Model& model) {
   const std::size_t elements = model.triangle.size(), nodes = model.reference_position.size();
-  std::vector<double> element_mass(elements), element_inertia(elements), element_step(elements);
+  ElementShares shares(elements);
   model.reference_area.resize(elements);
-  parallel::for_each(model.element_count(), 1024, [&](Index e) {
-    const Triangle& t = model.triangle[at(e)];
-    const Vec3d& origin = model.reference_position[at(t[0])];
-    const auto frame = physics::triangle_frame(model.reference_position[at(t[1])] - origin,
-                                               model.reference_position[at(t[2])] - origin);
-    const SectionData& section = model.section_of(e);
-    const double area = 0.5 * frame.doubled_area;
-    model.reference_area[at(e)] = area;
-    element_mass[at(e)] = physics::corner_mass(section.density, section.thickness, area);
-    element_inertia[at(e)] = physics::corner_inertia(element_mass[at(e)], section.thickness, area);
-    element_step[at(e)] =
-        physics::element_critical_step({section.thickness, section.moduli, model.run.drilling}, section.density, frame);
-  });
+  parallel::for_each(model.block_count(), 1024 / block_lanes,
+                     [&](Index block) { share_block(model.blocks[at(block)], model, shares); });
   model.first_critical_step = HUGE_VAL;
   for (std::size_t e = 0; e < elements; ++e) {
-    if (element_step[e] < model.first_critical_step) {
-      model.first_critical_step = element_step[e];
+    if (shares.step[e] < model.first_critical_step) {
+      model.first_critical_step = shares.step[e];
       model.first_critical_element = static_cast<Index>(e);
     }
   }
@@ -72,8 +100,8 @@ void build_masses(Model& model) {
     double mass = 0.0, inertia = 0.0, thickness = 0.0, area = HUGE_VAL;
     for (Index c = model.corner_start[at(n)]; c < model.corner_start[at(n) + 1]; ++c) {
       const Index e = model.corner[at(c)] / 3;
-      mass += element_mass[at(e)];
-      inertia += element_inertia[at(e)];
+      mass += shares.mass[at(e)];
+      inertia += shares.inertia[at(e)];
       thickness = std::max(thickness, model.section_of(e).thickness);
       area = std::min(area, model.reference_area[at(e)]);
     }

@@ -13,7 +13,7 @@ class Log {
  public:
   enum class Begin { anew, go_on };
   explicit Log(std::filesystem::path path, Begin begin = Begin::anew);
-  /// Reaches the file at once.
+  /// Reaches the file at once. Several threads may call it: the C library locks the file for the line.
   void line(std::string_view text);
 
  private:

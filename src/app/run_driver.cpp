@@ -55,12 +55,11 @@ ExitCode report_end(const RunEnd& end, std::int64_t frames, const io::RunDirecto
 }
 
 /// The files of rank 0: new ones, or those that a run goes on in. `failure`: why there are none.
-std::optional<RunOutput> open_output(const Drive& run, const cluster::Simulation& simulation,
-                                     std::optional<std::string>& failure) {
+void open_output(const Drive& run, const cluster::Simulation& simulation, std::optional<RunOutput>& output,
+                 std::optional<std::string>& failure) {
   const Case& loaded = run.loaded;
-  std::optional<RunOutput> output;
   if (!run.ranks.is_first()) {
-    return output;
+    return;
   }
   try {
     if (run.before_output) {
@@ -83,7 +82,6 @@ std::optional<RunOutput> open_output(const Drive& run, const cluster::Simulation
     output.reset();
     failure = error.what();
   }
-  return output;
 }
 
 void close_output(std::optional<RunOutput>& output, RunEnd& end) {
@@ -168,7 +166,8 @@ ExitCode drive(const Drive& run, RunEnd& end) {
     run.link->send({{"event", "started"}, {"step", simulation->state().step}, {"time", simulation->state().time}});
   }
   std::optional<std::string> failure;
-  std::optional<RunOutput> output = open_output(run, *simulation, failure);
+  std::optional<RunOutput> output;
+  open_output(run, *simulation, output, failure);
   {
     Progress progress(run.ranks.is_first() && !run.settings.quiet, loaded.model.run.duration,
                       loaded.deck.units.of("time"));

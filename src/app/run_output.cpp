@@ -70,6 +70,8 @@ void RunOutput::log_resumed(const model::State& state) {
 }
 
 void RunOutput::epoch(const cluster::EpochReport& report) {
+  // A full disk ends the run soon, not at the next frame.
+  writer_.check();
   histories_.add(report);
   if (hashes_) {
     for (const solve::HashRecord& record : report.hashes) {
@@ -91,13 +93,25 @@ void RunOutput::frame(const cluster::Simulation& simulation, const cluster::Epoc
     return;
   }
   frame_step_ = state.step;
-  model::capture_into(loaded_.model, state, simulation.workspace().contact.force, simulation.island_of_body(), frame_);
-  results_.append(frame_);
-  xdmf_.append(state.time);
-  log_.line(fmt::format("frame {}: time {:.6g}, step {}, dt {:.4g}, energy error {:.2e}, {} islands, {} contacts",
-                        results_.frames() - 1, state.time, state.step, report.dt, report.energy_error, report.islands,
-                        report.active_pairs));
   flush();
+  Shot& shot = writer_.next();
+  model::capture_into(loaded_.model, state, simulation.workspace().contact.force, simulation.island_of_body(),
+                      shot.frame);
+  shot.note = fmt::format("time {:.6g}, step {}, dt {:.4g}, energy error {:.2e}, {} islands, {} contacts", state.time,
+                          state.step, report.dt, report.energy_error, report.islands, report.active_pairs);
+  writer_.hand_over();
+}
+
+/// On the writer's thread.
+void RunOutput::write(const Shot& shot) {
+  results_.append(shot.frame);
+  xdmf_.append(shot.frame.time);
+  log_.line(fmt::format("frame {}: {}", results_.frames() - 1, shot.note));
+}
+
+std::int64_t RunOutput::frames() {
+  writer_.wait();
+  return results_.frames();
 }
 
 void RunOutput::row(const cluster::Simulation& simulation, const cluster::EpochReport& report) {
@@ -116,6 +130,7 @@ void RunOutput::flush() {
 }
 
 OutputMark RunOutput::mark() {
+  drain();
   flush();
   OutputMark mark;
   mark.frames = results_.frames();
@@ -129,6 +144,7 @@ OutputMark RunOutput::mark() {
 }
 
 void RunOutput::sync() {
+  drain();
   histories_.sync();
   if (hashes_) {
     hashes_->sync();
@@ -147,6 +163,7 @@ void RunOutput::close() {
       first = first ? first : std::current_exception();
     }
   };
+  attempt([this] { drain(); });
   attempt([this] { histories_.close(); });
   attempt([this] {
     if (hashes_) {

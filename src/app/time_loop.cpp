@@ -47,6 +47,7 @@ class Loop {
       write_row();
       write_frame();
     }
+    write([&] { output_->drain(); });
     end_.last_step = simulation.state().step;
     if (failed_) {
       end_.reason = EndReason::output_error;

@@ -284,6 +284,7 @@ void ResultsWriter::append(const model::Frame& frame) {
                       "capture it from that model");
   }
   parts_->usable = false;
+  hdf5::print_nothing();
   try {
     parts_->write_frame(frame);
     parts_->file.reserve();

@@ -16,6 +16,8 @@
 
 namespace fexp::io::hdf5 {
 
+void print_nothing() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
 namespace {
 
 /// Before any other call. A file that could not be closed (a full disk) stays on HDF5's list after its memory is freed,
@@ -23,7 +25,7 @@ namespace {
 /// themselves.
 void set_up() {
   H5dont_atexit();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  print_nothing();
 }
 
 /// HDF5 lists a failure from the outermost call inwards; the innermost knows the operating system's words.

@@ -44,6 +44,10 @@ class Handle {
   Close close_{};
 };
 
+/// Keeps HDF5 from printing errors of the calling thread; what opens a file has done so on its own. Where HDF5 is built
+/// for several threads, each has errors of its own.
+void print_nothing();
+
 /// Version of the HDF5 that is loaded.
 [[nodiscard]] std::string library_version();
 

@@ -43,6 +43,10 @@ class Tables(real.Case):
                 self.assertEqual(int(row["native"]), os.cpu_count())
                 # The heartbeat and MPI have threads of their own; those that compute start when there is work.
                 self.assertGreater(int(row["running"]), 1)
+            if threads == 1:
+                running = {name: int(row["running"]) for name, row in world.items()}
+                # Frames are written by a thread of rank 0, which is on c1.
+                self.assertEqual(running, {name: running["c2"] + (name == "c1") for name in running})
         server = [(row["world"], row["process"], int(row["running"])) for row in rows if row["process"] in
                   ("coordinator", "mpirun")]
         self.assertEqual([(world, process) for world, process, _ in server],

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <cmath>
-#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -18,6 +16,7 @@
 #include "io/xdmf.hpp"
 #include "model/capture.hpp"
 #include "parallel/parallel.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/hand_model.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -43,27 +42,6 @@ const io::ResultField& field(std::string_view name) {
   }
   throw std::runtime_error("no such field");
 }
-
-/// No file may grow beyond `bytes` while this lives: what a full disk does, without filling one.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    handler_ = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    static_cast<void>(std::signal(SIGXFSZ, handler_));
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int){};
-};
 
 TEST(capture, surface_stress_of_pure_bending_is_six_m_over_t_squared) {
   model::Model model = test::strips(1, 1);
@@ -197,7 +175,7 @@ TEST(results, a_full_disk_is_an_error_that_names_the_cure_and_keeps_the_frames_b
   {
     io::ResultsWriter writer(path, model);
     writer.append(frame_of(model, 0));
-    const FileSizeLimit limit(static_cast<rlim_t>(std::filesystem::file_size(path) + 3000000));
+    const test::FileSizeLimit limit(static_cast<rlim_t>(std::filesystem::file_size(path) + 3000000));
     try {
       for (; written < 100; ++written) {
         writer.append(frame_of(model, written + 1));

@@ -18,6 +18,7 @@
 #include "io/history.hpp"
 #include "io/output_error.hpp"
 #include "io/vtkhdf_reader.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace fexp::app {
@@ -170,6 +171,8 @@ class ResumedOutput : public testing::Test {
         killed.marks.push_back(output.mark());
       }
     }
+    // The copy is to be of one moment.
+    output.drain();
     fs::copy(directory_ / "live", killed.path, fs::copy_options::recursive);
     output.close();
     fs::remove_all(directory_ / "live");
@@ -317,6 +320,50 @@ TEST_F(ResumedOutput, without_hashes_goes_on_without_them) {
   RunOutput output(io::RunDirectory(path), loaded_, mark);
   run.finish(output);
   EXPECT_FALSE(fs::exists(path / "hashes.csv"));
+}
+
+TEST_F(ResumedOutput, of_a_disk_that_was_full_has_all_frames_before_and_goes_on) {
+  const fs::path path = directory_ / "run";
+  write_whole(directory_ / "whole");
+  // Within a frame's numbers, and where the space is taken for what is written after them.
+  for (rlim_t room = 50000; room <= 75000; room += 5000) {
+    SCOPED_TRACE(room);
+    fs::create_directory(path);
+    OutputMark mark;
+    int marked = 0;
+    std::int64_t kept = 0;
+    testing::internal::CaptureStderr();
+    {
+      WrittenRun run(loaded_);
+      RunOutput output(io::RunDirectory(path), loaded_, run.frames(), true);
+      run.write(output);
+      mark = output.mark();
+      const test::FileSizeLimit limit(fs::file_size(path / "results.vtkhdf") + room);
+      try {
+        while (!run.over()) {
+          run.epoch(&output);
+          if (run.epochs() % 4 == 0) {
+            mark = output.mark();
+            marked = run.epochs();
+          }
+        }
+        output.drain();
+        ADD_FAILURE() << "the limit was not reached";
+      } catch (const io::OutputError& error) {
+        EXPECT_EQ(error.path(), path / "results.vtkhdf");
+        EXPECT_NE(std::string(error.what()).find("File too large"), std::string::npos) << error.what();
+      }
+      EXPECT_NO_THROW(output.close()) << "it has been told";
+      kept = output.frames();
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "HDF5 prints nothing on any thread";
+    EXPECT_GT(marked, 0);
+    EXPECT_LE(mark.frames, kept);
+    EXPECT_EQ(io::ResultsReader(path / "results.vtkhdf").frames(), kept);
+    resume(path, mark, marked, std::nullopt);
+    expect_same_files(directory_ / "whole", path);
+    fs::remove_all(path);
+  }
 }
 
 TEST_F(ResumedOutput, files_that_are_not_what_the_run_had_written_are_refused_with_a_cure) {

@@ -273,13 +273,19 @@ class GmshReader {
     }
   }
 
+  /// Room for as many triangles as there are said to be, but no more than the rest of the file has lines for.
+  void reserve(std::size_t count) {
+    constexpr std::size_t shortest_line = 8;  // "1 2 3 4\n"
+    builder_.reserve_triangles(std::min(count, scanner_.remaining() / shortest_line));
+  }
+
   void read_elements() {
     if (!nodes_read_) {
       scanner_.fail("section $Elements stands before $Nodes", "$Nodes first", "save the mesh again with Gmsh");
     }
     if (version_ == 2) {
       const std::size_t count = scanner_.count("the number of elements", 6);
-      builder_.reserve_triangles(std::min(count, MeshBuilder::most));
+      reserve(count);
       for (std::size_t i = 0; i < count; ++i) {
         read_element_2();
       }
@@ -288,7 +294,7 @@ class GmshReader {
       const std::size_t count = scanner_.count("the number of elements", 4);
       static_cast<void>(scanner_.integer("the lowest element tag", 0, largest_tag));
       static_cast<void>(scanner_.integer("the highest element tag", 0, largest_tag));
-      builder_.reserve_triangles(std::min(count, MeshBuilder::most));
+      reserve(count);
       std::size_t found = 0;
       for (std::size_t b = 0; b < blocks; ++b) {
         found += read_element_block();

@@ -7,6 +7,7 @@
 
 #include "solve/diagnostics.hpp"
 #include "support/descriptions.hpp"
+#include "support/kernels.hpp"
 
 namespace fexp::solve {
 namespace {
@@ -64,9 +65,9 @@ TEST(critical_step, is_the_same_by_every_kernel) {
   const StepKernelArguments arguments{state.motion.data(), model.triangle.data(), model.blocks.data(),
                                       model.sections.data(), model.run.drilling};
   const StepKernel scalar = select_element_kernel(KernelChoice::scalar).steps;
-  for (const KernelChoice choice : {KernelChoice::baseline, KernelChoice::avx2, KernelChoice::avx512}) {
-    const SelectedKernel kernel = select_element_kernel(choice);
-    for (Index block = 0; kernel.elements != nullptr && block < model.block_count(); ++block) {
+  ASSERT_GE(test::kernels_here().size(), 2U);
+  for (const SelectedKernel& kernel : test::kernels_here()) {
+    for (Index block = 0; block < model.block_count(); ++block) {
       const CriticalStep expected = scalar(arguments, block, block + 1),
                          found = kernel.steps(arguments, block, block + 1);
       EXPECT_EQ(found.step, expected.step) << kernel.name << ", block " << block;

@@ -12,6 +12,7 @@
 
 #include "base/aligned_vector.hpp"
 #include "solve/patches.hpp"
+#include "support/kernels.hpp"
 #include "support/models.hpp"
 
 namespace fexp::solve {
@@ -89,30 +90,19 @@ TEST(element_kernels, of_every_width_give_the_bits_of_the_scalar_one) {
   for (int i = 0; i < 3; ++i) {
     scalar.step(select_element_kernel(KernelChoice::scalar).elements, 1e-5);
   }
-  int compared = 0;
-  for (const KernelChoice choice : {KernelChoice::baseline, KernelChoice::avx2, KernelChoice::avx512}) {
-    const SelectedKernel kernel = select_element_kernel(choice);
-    if (kernel.elements == nullptr) {
-      continue;  // this processor has no such instructions
-    }
+  ASSERT_GE(test::kernels_here().size(), 2U);
+  for (const SelectedKernel& kernel : test::kernels_here()) {
     RandomPlate packed;
     for (int i = 0; i < 3; ++i) {
       packed.step(kernel.elements, 1e-5);
     }
     EXPECT_EQ(differences(scalar, packed), 0) << kernel.name;
-    ++compared;
   }
-  EXPECT_GE(compared, 1);
 }
 
 /// Forces of several elements on a node are those of each alone, added in their order.
 TEST(element_kernels, add_corner_forces_in_the_order_of_elements) {
-  for (const KernelChoice choice :
-       {KernelChoice::scalar, KernelChoice::baseline, KernelChoice::avx2, KernelChoice::avx512}) {
-    const SelectedKernel kernel = select_element_kernel(choice);
-    if (kernel.elements == nullptr) {
-      continue;
-    }
+  for (const SelectedKernel& kernel : test::kernels_here()) {
     SCOPED_TRACE(kernel.name);
     RandomPlate all;
     const RandomPlate before = all;

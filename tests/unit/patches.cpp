@@ -13,6 +13,7 @@
 #include "solve/kernels.hpp"
 #include "solve/workspace.hpp"
 #include "support/descriptions.hpp"
+#include "support/kernels.hpp"
 
 namespace fexp::solve {
 namespace {
@@ -163,12 +164,7 @@ TEST(mesh_order, leaves_the_user_his_numbers) {
 /// Velocities that are not finite are told, at the end of the step or in the middle of the next, by every kernel.
 TEST(node_kernels, tell_what_is_not_finite_and_when) {
   const model::Model model = two_plates(3);
-  for (const KernelChoice choice :
-       {KernelChoice::scalar, KernelChoice::baseline, KernelChoice::avx2, KernelChoice::avx512}) {
-    const SelectedKernel kernel = select_element_kernel(choice);
-    if (kernel.elements == nullptr) {
-      continue;
-    }
+  for (const SelectedKernel& kernel : test::kernels_here()) {
     SCOPED_TRACE(kernel.name);
     const Workspace workspace(model, kernel);
     const auto run = [&](double force, bool go_on) {

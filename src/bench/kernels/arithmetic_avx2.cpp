@@ -15,11 +15,6 @@ static Pack<4> fused_multiply_add(Pack<4> a, Pack<4> b, Pack<4> c) noexcept {
 
 namespace fexp::bench::kernels {
 
-ArithmeticKernels arithmetic_avx2() noexcept {
-  using Lanes = Pack<4>;
-  constexpr double lanes = Lanes::width;
-  return {fused_rounds<Lanes>, separate_rounds<Lanes>, 2.0 * fused_chains * lanes, 2.0 * separate_chains * lanes,
-          triad<Lanes>};
-}
+ArithmeticKernels arithmetic_avx2() noexcept { return arithmetic_of<Pack<4>>(); }
 
 }  // namespace fexp::bench::kernels

@@ -15,11 +15,6 @@ static Pack<8> fused_multiply_add(Pack<8> a, Pack<8> b, Pack<8> c) noexcept {
 
 namespace fexp::bench::kernels {
 
-ArithmeticKernels arithmetic_avx512() noexcept {
-  using Lanes = Pack<8>;
-  constexpr double lanes = Lanes::width;
-  return {fused_rounds<Lanes>, separate_rounds<Lanes>, 2.0 * fused_chains * lanes, 2.0 * separate_chains * lanes,
-          triad<Lanes>};
-}
+ArithmeticKernels arithmetic_avx512() noexcept { return arithmetic_of<Pack<8>>(); }
 
 }  // namespace fexp::bench::kernels

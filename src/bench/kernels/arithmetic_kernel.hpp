@@ -71,6 +71,14 @@ void triad(double* a, const double* b, const double* c, double s, std::size_t co
   }
 }
 
+/// The loops over packs that have fused_multiply_add.
+template <class Lanes>
+ArithmeticKernels arithmetic_of() noexcept {
+  constexpr double lanes = Lanes::width;
+  return {fused_rounds<Lanes>, separate_rounds<Lanes>, 2.0 * fused_chains * lanes, 2.0 * separate_chains * lanes,
+          triad<Lanes>};
+}
+
 [[nodiscard]] ArithmeticKernels arithmetic_baseline() noexcept;
 [[nodiscard]] ArithmeticKernels arithmetic_avx2() noexcept;
 [[nodiscard]] ArithmeticKernels arithmetic_avx512() noexcept;

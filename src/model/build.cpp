@@ -196,7 +196,7 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
     plane.normal = (1.0 / norm(plane.normal)) * plane.normal;
   }
   build_sections(description, model);
-  build_bodies(description, meshes, model, errors);
+  const auto groups = build_bodies(description, meshes, model, errors);
   if (!errors.empty()) {
     return model;
   }
@@ -207,7 +207,7 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   check_masses(description, model, errors);
   build_velocities(description, model);
   build_exclusions(description, model, errors);
-  build_conditions(description, meshes, model, errors);
+  build_conditions(description, meshes, groups, model, errors);
   return model;
 }
 

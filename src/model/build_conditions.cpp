@@ -196,7 +196,8 @@ IndexRange range_in(const std::vector<Item>& items, IndexRange keys, const Key& 
 
 }  // namespace
 
-void build_conditions(const Description& description, std::span<const Mesh> meshes, Model& model, ErrorList& errors) {
+void build_conditions(const Description& description, std::span<const Mesh> meshes,
+                      std::span<const std::vector<NodeGroup>> groups, Model& model, ErrorList& errors) {
   NamedNodes all{"all", {}};
   for (Index n = 0; n < model.node_count(); ++n) {
     all.nodes.push_back(n);
@@ -204,7 +205,7 @@ void build_conditions(const Description& description, std::span<const Mesh> mesh
   model.node_sets.push_back(std::move(all));
   const BodyNames names(model);
   for (const NodeSet& set : description.node_sets) {
-    model.node_sets.push_back({set.name, select_nodes(set, meshes, model, names, errors)});
+    model.node_sets.push_back({set.name, select_nodes(set, groups, model, names, errors)});
   }
   const Lookup lookup(model);
   build_fixed(description, lookup, model);

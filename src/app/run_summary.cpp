@@ -88,6 +88,9 @@ io::Summary summarise(const Case& loaded, const cluster::Simulation& simulation,
                                          : 0.0;
   const solve::Energies& e = end.last.diagnostics.energies;
   summary.energies = {e.kinetic, e.internal, e.contact, e.barrier, e.external, e.damping, e.balance()};
+  if (model.run.is_static()) {
+    summary.residual = simulation.relaxation().residual();
+  }
   summary.kernel = simulation.workspace().kernel.name;
   add_extremes(simulation.extremes(), summary);
   summary.placement = placement_of(simulation);
@@ -105,6 +108,9 @@ std::string summary_text(const io::Summary& s, const io::UnitNames& units, const
                       s.bodies, s.islands_fewest, s.islands_most);
   text += fmt::format("  time       {:.6g} of {:.6g} {}, {} steps of {:.4g} to {:.4g}\n", s.time, s.duration,
                       units.of("time"), s.steps, s.step_smallest, s.step_largest);
+  if (s.residual) {
+    text += fmt::format("  static     residual {:.2e}\n", *s.residual);
+  }
   text += energies_text(start.energies, present.energies, units.of("force*length"));
   text +=
       fmt::format("  errors     energy {:.2e}, linear momentum {:.2e}, angular momentum {:.2e} (largest, relative)\n",

@@ -43,6 +43,10 @@ class Loop {
     while (going && !schedule_.over()) {
       going = run_epoch();
     }
+    if (schedule_.over() && end_.reason == EndReason::completed && simulation.model().run.is_static() &&
+        !simulation.relaxation().settled()) {
+      note_unrest();
+    }
     if (end_.reason != EndReason::reform) {
       write_row();
       write_frame();
@@ -93,6 +97,17 @@ class Loop {
     return go_on();
   }
 
+  /// A static analysis that has not come to rest has no answer.
+  void note_unrest() {
+    const cluster::Simulation& simulation = parts_.simulation;
+    end_.reason = EndReason::fault;
+    end_.fault.kind = cluster::FaultKind::not_settled;
+    end_.fault.message = fmt::format("the static analysis has not settled: the residual is {:.2g} (run.residual {:g})",
+                                     simulation.relaxation().residual(), simulation.model().run.residual);
+    end_.fault.cure = "give run.duration more time, hold bodies that can move freely, or accept a larger run.residual";
+    end_.message = end_.fault.message;
+  }
+
   /// Does what was asked for; false when that ends the run.
   bool go_on() {
     cluster::Simulation& simulation = parts_.simulation;
@@ -101,7 +116,7 @@ class Loop {
       end_.reason = EndReason::output_error;
       return false;
     }
-    if (schedule_.over()) {
+    if (schedule_.over() || simulation.relaxation().settled()) {
       return false;
     }
     asked.reform = asked.reform || parts_.keeper.event_due(simulation);

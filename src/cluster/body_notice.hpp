@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "cluster/relaxation.hpp"
 #include "cluster/swept_boxes.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
@@ -14,8 +15,11 @@ struct BodyNotice {
   BodyExtent extent;
   solve::CriticalStep critical;  ///< Of its elements
   solve::Diagnostics diagnostics;
+  RelaxationSums relaxation;  ///< Of a static analysis
 };
 
-[[nodiscard]] BodyNotice notice_of(const model::Model& model, const model::State& state, Index body);
+/// `before`: the state at the start of the epoch.
+[[nodiscard]] BodyNotice notice_of(const model::Model& model, const model::State& before, const model::State& state,
+                                   Index body);
 
 }  // namespace fexp::cluster

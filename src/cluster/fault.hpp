@@ -7,7 +7,7 @@
 
 namespace fexp::cluster {
 
-enum class FaultKind { none, not_finite, step_collapsed, energy_drift };
+enum class FaultKind { none, not_finite, step_collapsed, energy_drift, not_settled };
 
 /// A physical failure of the run: what happened where, in one sentence, and the usual cure.
 struct Fault {

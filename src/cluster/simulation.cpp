@@ -67,7 +67,7 @@ Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, Wo
       sudden_energy_(solve::sudden_load_energy(model, model.run.safety * model.first_critical_step)) {
   parallel::for_each(model_.body_count(), 1, [&](Index b) {
     if (model_.bodies[at(b)].barrier) {
-      notices_[at(b)] = notice_of(model_, state_, b);
+      notices_[at(b)] = notice_of(model_, state_, state_, b);
     } else {
       notices_[at(b)].extent = extent_of(model_, state_, b);
     }
@@ -169,7 +169,8 @@ RankRecord Simulation::advance_islands(const Attempt& attempt, std::int64_t hash
   std::vector<solve::IslandReport> islands(order.size());
   std::vector<double> seconds(solvers_.size(), 0.0);
   std::vector<std::vector<solve::HashRecord>> hashes(order.size());
-  const solve::EpochPlan plan{attempt.dt, attempt.steps, attempt.end_time, hash_every, attempt.allowance};
+  const solve::EpochPlan plan{attempt.dt, attempt.steps,     attempt.end_time,
+                              hash_every, attempt.allowance, model_.run.damping + relaxation_.damping()};
   parallel::for_each(static_cast<Index>(order.size()), 1, [&](Index k) {
     solve::IslandSolver& solver = *solvers_[at(order[at(k)])];
     const auto island_start = Clock::now();
@@ -231,6 +232,7 @@ EpochReport Simulation::run_epoch(double target, std::int64_t hash_every, const 
       report.dt = attempt.dt;
       report.steps = attempt.steps;
       gather(record, report);
+      relax();
       break;
     }
   }
@@ -277,6 +279,18 @@ Simulation::Verdict Simulation::guard(Attempt& attempt, const RankRecord& record
     fault = collapsed_fault();
   }
   return Verdict::accept;
+}
+
+/// Damping for the next epoch of a static analysis, and whether it has settled.
+void Simulation::relax() {
+  if (!model_.run.is_static()) {
+    return;
+  }
+  RelaxationSums sums;
+  for (const BodyNotice& notice : notices_) {
+    sums += notice.relaxation;
+  }
+  relaxation_.add(sums, model_.run, state_.time, end_of_curves(model_));
 }
 
 void Simulation::gather(const RankRecord& record, EpochReport& report) const {

@@ -70,6 +70,8 @@ class Simulation {
   [[nodiscard]] const solve::Workspace& workspace() const noexcept { return workspace_; }
   [[nodiscard]] const RunExtremes& extremes() const noexcept { return extremes_; }
   [[nodiscard]] const solve::Diagnostics& start() const noexcept { return start_; }
+  /// How far a static analysis has come.
+  [[nodiscard]] const Relaxation& relaxation() const noexcept { return relaxation_; }
   /// Diagnostics, errors and contact counts of the present state.
   [[nodiscard]] EpochReport present() const;
   /// Island of each body (barriers: no_index), shape [bodies].
@@ -116,6 +118,7 @@ class Simulation {
   Verdict guard(Attempt& attempt, const RankRecord& record, bool may_retry, Fault& fault);
   void put_back();
   void gather(const RankRecord& record, EpochReport& report) const;
+  void relax();
   void judge(EpochReport& report);
   void adopt_machines(const std::vector<Machine>& known);
   void unpack_run(ByteReader& in);
@@ -160,6 +163,7 @@ class Simulation {
   solve::Diagnostics start_;
   double energy_scale_{};
   double sudden_energy_{};  // Open because of loads that come at once [force*length]
+  Relaxation relaxation_;   // Of a static analysis
   double linear_scale_{};
   double angular_scale_{};
   RunExtremes extremes_;

@@ -11,7 +11,7 @@ namespace fexp::cluster {
 
 namespace {
 
-constexpr std::uint64_t format_version = 1;
+constexpr std::uint64_t format_version = 2;
 
 /// Step and time stand first in what is packed of a run.
 bool same_moment(std::span<const std::byte> a, std::span<const std::byte> b) {
@@ -30,6 +30,7 @@ void Simulation::pack_run(ByteWriter& out) const {
   out.value(contact_frequency2_);
   out.value(start_);
   out.value(energy_scale_);
+  out.value(relaxation_);
   out.value(linear_scale_);
   out.value(angular_scale_);
   out.value(extremes_);
@@ -66,6 +67,7 @@ void Simulation::unpack_run(ByteReader& in) {
   contact_frequency2_ = in.value<double>();
   start_ = in.value<solve::Diagnostics>();
   energy_scale_ = in.value<double>();
+  relaxation_ = in.value<Relaxation>();
   linear_scale_ = in.value<double>();
   angular_scale_ = in.value<double>();
   extremes_ = in.value<RunExtremes>();

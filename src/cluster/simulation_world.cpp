@@ -178,7 +178,7 @@ RankRecord Simulation::share(const RankRecord& own, std::span<const double> isla
         sizeof(double) + island.bodies.size() * body_bytes;
   }
   parallel::for_each(static_cast<Index>(own_bodies_.size()), 1, [&](Index k) {
-    notices_[at(own_bodies_[at(k)])] = notice_of(model_, state_, own_bodies_[at(k)]);
+    notices_[at(own_bodies_[at(k)])] = notice_of(model_, backup_, state_, own_bodies_[at(k)]);
   });
   RankRecord record = own;
   const Traffic& traffic = world_.communicator->traffic();

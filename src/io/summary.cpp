@@ -96,6 +96,9 @@ ordered_json network_part(const Summary::Network& n) {
 
 ordered_json to_json(const Summary& s) {
   ordered_json json = run_part(s);
+  if (s.residual) {
+    json["residual"] = *s.residual;
+  }
   json["energies"] = energies_part(s.energies);
   json["step_smallest"] = s.step_smallest;
   json["step_largest"] = s.step_largest;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,10 +25,11 @@ struct Summary {
   std::int64_t bodies{};
   int threads{};
   int ranks{1};
-  double energy_error{};            ///< Largest relative imbalance over the run [-]
-  double linear_momentum_error{};   ///< Largest, relative to the sum of moduli [-]
-  double angular_momentum_error{};  ///< Largest, relative to the sum of moduli [-]
-  std::string state_hash;           ///< 16 hexadecimal digits
+  double energy_error{};             ///< Largest relative imbalance over the run [-]
+  double linear_momentum_error{};    ///< Largest, relative to the sum of moduli [-]
+  double angular_momentum_error{};   ///< Largest, relative to the sum of moduli [-]
+  std::optional<double> residual{};  ///< Of a static analysis, at the end [-]
+  std::string state_hash;            ///< 16 hexadecimal digits
   double wall_seconds{};
   double element_steps_per_second{};
 

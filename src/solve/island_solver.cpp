@@ -33,6 +33,7 @@ struct IslandSolver::Step {
   Workspace& workspace;
   double dt;        ///< [time]; 0: evaluate without moving
   double end_time;  ///< t(n+1) [time]
+  double damping;   ///< [1/time]
 
   [[nodiscard]] double half_dt() const noexcept { return 0.5 * dt; }
   [[nodiscard]] double middle_time() const noexcept { return end_time - 0.5 * dt; }
@@ -75,7 +76,7 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
 }
 
 void IslandSolver::evaluate(const model::Model& model, model::State& state, Workspace& workspace) {
-  const Step still{model, state, workspace, 0.0, state.time};
+  const Step still{model, state, workspace, 0.0, state.time, 0.0};
   for (Partial& partial : partials_) {
     partial = {};
   }
@@ -97,7 +98,7 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
   for (Index i = 0; i < plan.steps; ++i) {
     // The last step ends at the very time of the state after it, so that loads evaluated anew there are the same.
     const double end_time = i + 1 == plan.steps ? plan.end_time : start_time + static_cast<double>(i + 1) * plan.dt;
-    const Step step{model, state, workspace, plan.dt, end_time};
+    const Step step{model, state, workspace, plan.dt, end_time, plan.damping};
     if (!opened) {
       opening_half(step);
     }
@@ -148,7 +149,7 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
 /// memory of its force and its work is exactly the kinetic energy it takes.
 void IslandSolver::kick(const Step& step, const Piece& piece, Partial& partial) {
   const double half = step.half_dt();
-  const double damping = step.model.run.damping;
+  const double damping = step.damping;
   const double kept = 1.0 / (1.0 + damping * half);
   for (Index i = piece.nodes.begin; i < piece.nodes.end; ++i) {
     const Index n = piece.node[i];

@@ -21,6 +21,7 @@ struct EpochPlan {
   std::int64_t hash_every{};  ///< Record body hashes after every so many steps of the run; 0: never.
   /// How far a body's nodes may move before it leaves its swept box [length], shape [bodies of the model].
   std::span<const double> allowance;
+  double damping{};  ///< Coefficient of mass-proportional damping [1/time]
 };
 
 struct HashRecord {

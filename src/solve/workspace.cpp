@@ -23,7 +23,7 @@ Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
     body.plane_force.resize(model.planes.size());
   }
   body_contact.resize(model.bodies.size());
-  external = !load.empty() || model.run.damping > 0.0 || !model.planes.empty() || !model.fixed.empty() ||
+  external = !load.empty() || model.run.damping > 0.0 || model.run.is_static() || !model.planes.empty() || !model.fixed.empty() ||
              !model.prescribed.empty() || !model.symmetry.empty();
 }
 

@@ -28,6 +28,7 @@ const std::vector<Scene>& scenes() {
   static const std::vector<Scene> all{{"two_pairs_of_spheres", test::two_pairs_of_spheres, 0.2},
                                       {"sphere_on_plate", test::sphere_on_plate, 0.05},
                                       {"tube_that_folds", test::tube_that_folds, 0.04},
+                                      {"plates_at_rest", test::plates_at_rest, 0.05},
                                       {"swarm", test::swarm, 0.1}};
   return all;
 }

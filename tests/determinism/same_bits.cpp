@@ -42,6 +42,8 @@ const std::vector<Scene>& scenes() {
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.extremes.rollbacks > 0; }},
       {"tube_that_folds", test::tube_that_folds, 0.06,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.own_sides > 0; }},
+      {"plates_at_rest", test::plates_at_rest, 0.05,
+       [](const test::Outcome& o) { return o.extremes.fewest_islands == 3 && o.extremes.most_active_pairs > 5; }},
       {"swarm", test::swarm, 0.1,
        [](const test::Outcome& o) {
          return o.extremes.most_active_pairs > 20 && o.extremes.most_islands > o.extremes.fewest_islands;
@@ -108,7 +110,8 @@ class Island {
   void advance(double dt, Index steps) {
     std::vector<solve::HashRecord> hashes;
     const double end = state_.time + static_cast<double>(steps) * dt;
-    const auto report = solver_.advance(model_, state_, workspace_, {dt, steps, end, 0, allowance_}, hashes);
+    const auto report =
+        solver_.advance(model_, state_, workspace_, {dt, steps, end, 0, allowance_, model_.run.damping}, hashes);
     ASSERT_EQ(report.steps_done, steps);
     most_pairs_ = std::max(most_pairs_, report.most_active_pairs);
     solver_.store(model_, state_);

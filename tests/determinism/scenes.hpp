@@ -46,6 +46,25 @@ inline model::Description two_pairs_of_spheres() {
   return d;
 }
 
+/// Plates that sag under their weight until they rest, side by side, one of them on a fixed one. How all of them move
+/// sets the damping of each.
+inline model::Description plates_at_rest() {
+  model::Description d = with_contact(0.02);
+  d.run.analysis = "static";
+  for (int i = 0; i < 3; ++i) {
+    add_body(d, "plate " + std::to_string(i), plate(1.0 + 0.2 * i, 6 + 8 * i)).translate = {0.0, 3.0 * i, 0.0};
+  }
+  add_body(d, "table", plate(1.2, 5)).translate = {-0.1, -0.1, -0.022};
+  d.node_sets.emplace_back().name = "rim";
+  d.node_sets.back().boundary = true;
+  fix(d, "rim", {"x", "y", "z"});
+  d.node_sets.emplace_back().name = "table";
+  d.node_sets.back().bodies = {"table"};
+  fix(d, "table", {"x", "y", "z", "rx", "ry", "rz"});
+  d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
+  return d;
+}
+
 /// A sphere thrown onto a plate with a clamped and a driven edge, everything under gravity and pressure with curves, a
 /// rigid plane below. The load that sets in suddenly has epochs rolled back.
 inline model::Description sphere_on_plate() {

@@ -107,8 +107,8 @@ TEST(swept_boxes, no_node_leaves_its_box_unless_the_guard_trips) {
       }
       box = box.grown(allowance[0]);
       std::vector<solve::HashRecord> hashes;
-      const auto report =
-          island.advance(model, state, workspace, {dt, n, static_cast<double>(n) * dt, 0, allowance}, hashes);
+      const auto report = island.advance(model, state, workspace,
+                                         {dt, n, static_cast<double>(n) * dt, 0, allowance, model.run.damping}, hashes);
       if (report.stop == solve::StopReason::left_swept_box) {
         EXPECT_EQ(report.stop_body, 0);
         EXPECT_GT(report.steps_done, 0) << "one step never leaves the box";

@@ -5,14 +5,14 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
-#include "base/pack.hpp"
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
+#include "model/element_shares.hpp"
 #include "model/node_sets.hpp"
 #include "model/topology.hpp"
 #include "parallel/parallel.hpp"
-#include "physics/critical_step.hpp"
 
 namespace fexp::model {
 
@@ -38,51 +38,11 @@ void build_sections(const Description& description, Model& model) {
   }
 }
 
-/// What elements bring to the nodes at their corners, and their critical steps, shape [elements] each.
-struct ElementShares {
-  explicit ElementShares(std::size_t elements) : mass(elements), inertia(elements), step(elements) {}
-
-  std::vector<double> mass;     // Of one corner [mass]
-  std::vector<double> inertia;  // Of one corner [mass*length^2]
-  std::vector<double> step;     // [time]
-};
-
-/// The elements of one block side by side, as the roots of a critical step are found one after the other.
-void share_block(const ElementBlock& block, Model& model, ElementShares& shares) {
-  using Lanes = Pack<block_lanes>;
-  Vec3<Lanes> side_12, side_13;
-  for (Index lane = 0; lane < block_lanes; ++lane) {
-    const Triangle& t = model.triangle[at(block.first + std::min(lane, block.count - 1))];
-    const Vec3d& origin = model.reference_position[at(t[0])];
-    const Vec3d a = model.reference_position[at(t[1])] - origin, b = model.reference_position[at(t[2])] - origin;
-    side_12.x.set_lane(lane, a.x);
-    side_12.y.set_lane(lane, a.y);
-    side_12.z.set_lane(lane, a.z);
-    side_13.x.set_lane(lane, b.x);
-    side_13.y.set_lane(lane, b.y);
-    side_13.z.set_lane(lane, b.z);
-  }
-  const auto frame = physics::triangle_frame(side_12, side_13);
-  const SectionData& section = model.sections[at(block.section)];
-  const Lanes step =
-      physics::element_critical_step({section.thickness, section.moduli, model.run.drilling}, section.density, frame);
-  for (Index lane = 0; lane < block.count; ++lane) {
-    const std::size_t e = at(block.first + lane);
-    const double area = 0.5 * frame.doubled_area.lane(lane);
-    model.reference_area[e] = area;
-    shares.mass[e] = physics::corner_mass(section.density, section.thickness, area);
-    shares.inertia[e] = physics::corner_inertia(shares.mass[e], section.thickness, area);
-    shares.step[e] = step.lane(lane);
-  }
-}
-
 /// Lumped masses and inertias, areas, half thicknesses and penalty stiffnesses; each node gathers its own corners.
 void build_masses(Model& model) {
   const std::size_t elements = model.triangle.size(), nodes = model.reference_position.size();
-  ElementShares shares(elements);
-  model.reference_area.resize(elements);
-  parallel::for_each(model.block_count(), 1024 / block_lanes,
-                     [&](Index block) { share_block(model.blocks[at(block)], model, shares); });
+  ElementShares shares = element_shares(model);
+  model.reference_area = std::move(shares.area);
   model.first_critical_step = HUGE_VAL;
   for (std::size_t e = 0; e < elements; ++e) {
     if (shares.step[e] < model.first_critical_step) {

@@ -18,6 +18,17 @@ namespace fexp::model {
 
 namespace {
 
+void build_curve_areas(Model& model) {
+  for (const Curve& curve : model.curves) {
+    std::vector<double>& areas = model.curve_areas.emplace_back();
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      const auto& [time, value] = curve.points[i];
+      areas.push_back(i == 0 ? 0.0
+                             : areas.back() + 0.5 * (time - curve.points[i - 1][0]) * (value + curve.points[i - 1][1]));
+    }
+  }
+}
+
 void build_sections(const Description& description, Model& model) {
   for (const Section& section : description.sections) {
     SectionData data;
@@ -38,11 +49,31 @@ void build_sections(const Description& description, Model& model) {
   }
 }
 
+/// Gives elements that need a smaller step than asked for as much mass as it takes: the step goes with its root.
+void scale_masses(Model& model, ElementShares& shares) {
+  const double target = model.run.minimum_step / model.run.safety;
+  const auto is_short = [&](double step) { return step < target; };
+  if (std::none_of(shares.step.begin(), shares.step.end(), is_short)) {
+    return;
+  }
+  model.step_factor.assign(shares.step.size(), 1.0);
+  for (std::size_t e = 0; e < shares.step.size(); ++e) {
+    if (is_short(shares.step[e])) {
+      const double factor = target / shares.step[e];
+      model.step_factor[e] = factor;
+      shares.mass[e] *= factor * factor;
+      shares.inertia[e] *= factor * factor;
+      shares.step[e] *= factor;
+    }
+  }
+}
+
 /// Lumped masses and inertias, areas, half thicknesses and penalty stiffnesses; each node gathers its own corners.
 void build_masses(Model& model) {
   const std::size_t elements = model.triangle.size(), nodes = model.reference_position.size();
   ElementShares shares = element_shares(model);
   model.reference_area = std::move(shares.area);
+  scale_masses(model, shares);
   model.first_critical_step = HUGE_VAL;
   for (std::size_t e = 0; e < elements; ++e) {
     if (shares.step[e] < model.first_critical_step) {
@@ -69,7 +100,13 @@ void build_masses(Model& model) {
     model.inertia[at(n)] = inertia;
     model.half_thickness[at(n)] = 0.5 * thickness;
     model.node_size[at(n)] = std::sqrt(area);
-    model.contact_stiffness[at(n)] = model.contact.penalty_scale * mass * frequency * frequency;
+  });
+  for (const AddedNode& point : model.point_masses) {
+    model.mass[at(point.node)] += point.mass;
+    model.inertia[at(point.node)] += point.inertia;
+  }
+  parallel::for_each(model.node_count(), 1024, [&](Index n) {
+    model.contact_stiffness[at(n)] = model.contact.penalty_scale * model.mass[at(n)] * frequency * frequency;
   });
   for (Body& body : model.bodies) {
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
@@ -151,6 +188,7 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   model.run = description.run;
   model.contact = description.contact;
   model.curves = description.curves;
+  build_curve_areas(model);
   model.planes = description.planes;
   for (RigidPlane& plane : model.planes) {
     plane.normal = (1.0 / norm(plane.normal)) * plane.normal;
@@ -163,6 +201,8 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   CornerRows rows = corner_rows(model.node_count(), model.triangle);
   model.corner_start = std::move(rows.start);
   model.corner = std::move(rows.corner);
+  build_node_sets(description, meshes, model, errors);
+  build_point_masses(description, model);
   build_masses(model);
   check_masses(description, model, errors);
   build_velocities(description, model);

@@ -273,6 +273,7 @@ void build_bodies(const Description& description, std::span<const Mesh> meshes, 
   for (std::size_t b = 0; b < description.bodies.size(); ++b) {
     const BodyDescription& body = description.bodies[b];
     const Mesh& mesh = meshes[b];
+    model.part_names.push_back(mesh.part_names);
     const std::size_t before = errors.size();
     const Surface surface = check_mesh(mesh, body.mesh_place, body.name, errors);
     if (errors.size() != before) {

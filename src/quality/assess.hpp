@@ -33,6 +33,9 @@ namespace fexp::quality {
 /// ("overlapping_shells"). A note where contact would not act between them anyway.
 [[nodiscard]] std::vector<Finding> overlapping_shells(const model::Model& model);
 
+/// Mass that mass scaling gave the parts of bodies ("added_mass"): a warning where it is more than 5 % of the part's.
+[[nodiscard]] std::vector<Finding> added_mass(const model::Model& model);
+
 /// A few elements whose critical step is so far below that of the others that it costs half again as many steps
 /// ("slivers").
 [[nodiscard]] std::vector<Finding> slivers(const model::Model& model);

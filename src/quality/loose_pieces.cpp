@@ -64,6 +64,7 @@ std::vector<char> acted_upon(const model::Model& model, const Pieces& pieces) {
   mark_nodes_of(model.fixed);
   mark_nodes_of(model.prescribed);
   mark_nodes_of(model.symmetry);
+  mark_nodes_of(model.oblique);
   mark_nodes_of(model.forces);
   for (const model::PressureLoad& pressure : model.pressure) {
     mark(model.triangle[at(pressure.element)][0]);

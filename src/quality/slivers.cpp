@@ -41,7 +41,10 @@ std::vector<Finding> slivers(const model::Model& model) {
     std::iota(elements.end() - model.bodies[at(b)].elements.size(), elements.end(), model.bodies[at(b)].elements.begin);
   }
   const std::size_t most = most_slivers(elements.size());
-  const std::vector<double> step = model::element_shares(model).step;
+  std::vector<double> step = model::element_shares(model).step;
+  for (std::size_t e = 0; e < model.step_factor.size(); ++e) {
+    step[e] *= model.step_factor[e];
+  }
   std::partial_sort(elements.begin(), elements.begin() + static_cast<std::ptrdiff_t>(most + 1), elements.end(),
                     [&](Index a, Index b) { return step[at(a)] != step[at(b)] ? step[at(a)] < step[at(b)] : a < b; });
   const double smallest = step[at(elements.front())], without = step[at(elements[most])];
@@ -68,7 +71,7 @@ std::vector<Finding> slivers(const model::Model& model) {
       "element {} of body \"{}\", is {:.3g} high",
       safety * smallest, finding.count, elements.size(), safety * without, without / smallest,
       model.element_label[at(first)], model.bodies[at(body)].name, height(model, first));
-  finding.cure = "remesh them, or merge their nodes with those beside them";
+  finding.cure = "remesh them, merge their nodes with those beside them, or give them mass with run.minimum_step";
   return {std::move(finding)};
 }
 

@@ -108,7 +108,8 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
         load_nodes(step);
       }
       // Held nodes are seen to before velocities change.
-      const bool held = !model.fixed.empty() || !model.symmetry.empty() || !model.prescribed.empty();
+      const bool held =
+          !model.fixed.empty() || !model.symmetry.empty() || !model.oblique.empty() || !model.prescribed.empty();
       advance_pieces(step, held ? Pass::accelerate : Pass::accelerate_and_close);
       act_on_bodies(step);
       if (held) {

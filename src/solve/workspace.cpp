@@ -24,7 +24,7 @@ Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
   }
   body_contact.resize(model.bodies.size());
   external = !load.empty() || model.run.damping > 0.0 || !model.planes.empty() || !model.fixed.empty() ||
-             !model.prescribed.empty() || !model.symmetry.empty();
+             !model.prescribed.empty() || !model.symmetry.empty() || !model.oblique.empty();
 }
 
 }  // namespace fexp::solve

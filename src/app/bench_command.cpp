@@ -114,8 +114,8 @@ class Bench {
         if (table_) {
           table_->add(report_.machine, row);
         }
-        tell(fmt::format("{}, {} triangles, {}: {:.2f} million queries/s\n", one.name, row.elements,
-                         threads_text(threads), 1.0e-6 * row.queries.median));
+        tell(fmt::format("{}, {} triangles, {}: {:.2f} million elements/s\n", one.name, row.elements,
+                         threads_text(threads), 1.0e-6 * row.searches.median));
       }
     }
     if (table_) {

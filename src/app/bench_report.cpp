@@ -41,11 +41,10 @@ const std::vector<io::Column>& columns() {
                                            {"share_of_separate_peak_flops", "-"},
                                            {"heap_bytes_per_element", "byte"},
                                            {"least_bytes_per_element", "byte"},
-                                           {"points_per_second", "1/s"},
-                                           {"points_spread", "-"},
-                                           {"queries_per_second", "1/s"},
-                                           {"queries_spread", "-"},
-                                           {"points_per_query", ""}};
+                                           {"tree_elements_per_second", "1/s"},
+                                           {"tree_spread", "-"},
+                                           {"search_elements_per_second", "1/s"},
+                                           {"search_spread", "-"}};
   return all;
 }
 
@@ -135,11 +134,10 @@ ordered_json row_json(const BenchMachine& machine, const bench::SearchRow& row) 
           {"nodes", row.nodes},
           {"threads", row.threads},
           {"repetitions", bench::repetitions},
-          {"points_per_second", row.points.median},
-          {"points_spread", row.points.spread},
-          {"queries_per_second", row.queries.median},
-          {"queries_spread", row.queries.spread},
-          {"points_per_query", row.points_per_query},
+          {"tree_elements_per_second", row.trees.median},
+          {"tree_spread", row.trees.spread},
+          {"search_elements_per_second", row.searches.median},
+          {"search_spread", row.searches.spread},
           {"triad_bandwidth", roofs.triad.best},
           {"peak_flops", roofs.peak_flops()}};
 }
@@ -210,7 +208,8 @@ std::string steps_text(const BenchMachine& machine, const std::vector<bench::Ste
          fmt::format(
              "  an element-step has {} flops, and {} for each of its {:.2f} nodes: {:.0f}; it moves {:.0f} bytes at "
              "the "
-             "least where\n  nothing stays in a cache, so that more than 100 % of the triad says that much does; what "
+             "least where\n  nothing stays in a cache, so that more than 100 % of the triad says that much does; "
+             "what "
              "contact does is in neither\n\n",
              cost.element.flops(), cost.node.flops(), cost.nodes, cost.flops(), cost.least_bytes());
 }
@@ -220,11 +219,11 @@ std::string searches_text(const std::vector<bench::SearchRow>& rows) {
     return "";
   }
   std::vector<Line> lines{
-      {"case", "triangles", "threads", "10^6 points/s in trees", "spread", "10^6 queries/s", "spread"}};
+      {"case", "triangles", "threads", "10^6 el/s in trees", "spread", "10^6 el/s in searches", "spread"}};
   for (const bench::SearchRow& row : rows) {
     lines.push_back({row.name, std::to_string(row.elements), std::to_string(row.threads),
-                     fmt::format("{:.2f}", 1.0e-6 * row.points.median), percent(row.points.spread),
-                     fmt::format("{:.2f}", 1.0e-6 * row.queries.median), percent(row.queries.spread)});
+                     fmt::format("{:.2f}", 1.0e-6 * row.trees.median), percent(row.trees.spread),
+                     fmt::format("{:.2f}", 1.0e-6 * row.searches.median), percent(row.searches.spread)});
   }
   return aligned(lines);
 }

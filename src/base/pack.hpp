@@ -114,6 +114,34 @@ struct BasicPack {
     }
     return equal;
   }
+  /// Bit i says whether a <= b in lane i.
+  friend unsigned lanes_at_most(BasicPack a, BasicPack b) noexcept {
+#if defined(__AVX512F__)
+    if constexpr (W == 8) {
+      return _mm512_cmp_pd_mask(reinterpret_cast<__m512d>(a.v), reinterpret_cast<__m512d>(b.v), _CMP_LE_OQ);
+    }
+#endif
+#if defined(__AVX2__)
+    if constexpr (W == 4) {
+      return static_cast<unsigned>(_mm256_movemask_pd(
+          _mm256_cmp_pd(reinterpret_cast<__m256d>(a.v), reinterpret_cast<__m256d>(b.v), _CMP_LE_OQ)));
+    }
+#endif
+    unsigned lanes = 0;
+    for (int i = 0; i < W; ++i) {
+      lanes |= static_cast<unsigned>(a.v[i] <= b.v[i]) << static_cast<unsigned>(i);
+    }
+    return lanes;
+  }
+  /// Bit i says whether a == b in lane i.
+  friend unsigned lanes_equal(BasicPack a, BasicPack b) noexcept {
+#if defined(__AVX512F__)
+    if constexpr (W == 8) {
+      return _mm512_cmp_pd_mask(reinterpret_cast<__m512d>(a.v), reinterpret_cast<__m512d>(b.v), _CMP_EQ_OQ);
+    }
+#endif
+    return lanes_at_most(a, b) & lanes_at_most(b, a);
+  }
   /// Lane-wise smaller value; both operands must be free of NaN.
   friend BasicPack minimum(BasicPack a, BasicPack b) noexcept { return BasicPack(a.v < b.v ? a.v : b.v); }
   /// Lane-wise larger value; both operands must be free of NaN.

@@ -78,4 +78,10 @@ struct Box {
   }
 };
 
+/// The axis along which a box extends farthest, the first of those that do.
+[[nodiscard]] inline double Vec3d::*longest_axis(const Box& box) noexcept {
+  const Vec3d extent = box.high - box.low;
+  return extent.x >= extent.y && extent.x >= extent.z ? &Vec3d::x : extent.y >= extent.z ? &Vec3d::y : &Vec3d::z;
+}
+
 }  // namespace fexp

@@ -13,7 +13,8 @@
 #include "bench/scenes.hpp"
 #include "bench/search_scene.hpp"
 #include "cluster/simulation.hpp"
-#include "contact/kd_tree.hpp"
+#include "contact/box_tree.hpp"
+#include "contact/candidates.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::bench {
@@ -210,16 +211,20 @@ SearchRow measure_search(const SearchCase& search_case, int threads, double seco
   SearchRow row;
   parallel::with_threads(threads, [&] {
     const SearchScene scene(search_case.elements);
-    row = {search_case.name, scene.sphere.element_count(), scene.sphere.node_count(), threads, {}, {}, 0.0};
-    contact::KdTree tree;
-    const Rate builds = rate_of_calls(seconds, [&] { tree.build(scene.sphere.reference_position); });
-    std::vector<Index> found;
-    const Rate rounds = rate_of_calls(seconds, [&] { ask_all(tree, scene.boxes, found); });
-    row.points = scaled(row.nodes, builds);
-    row.queries = scaled(row.elements, rounds);
-    for (const Index count : found) {
-      row.points_per_query += static_cast<double>(count) / row.elements;
-    }
+    const model::Model& sphere = scene.sphere;
+    row = {search_case.name, sphere.element_count(), sphere.node_count(), threads, {}, {}};
+    contact::BoxTree tree;
+    const Rate builds = rate_of_calls(seconds, [&] { tree.build(scene.block_boxes); });
+    contact::CandidateSearch search;
+    contact::Candidates found;
+    const std::vector<Index> bodies{0};
+    const auto motion = model::initial_state(sphere).motion;
+    search.assign(sphere, bodies);
+    const Rate searches = rate_of_calls(seconds, [&] {
+      search.search(sphere, {motion.data(), 0.0}, scene.skin, {}, found);
+    });
+    row.trees = scaled(row.elements, builds);
+    row.searches = scaled(row.elements, searches);
   });
   return row;
 }

@@ -30,7 +30,7 @@ struct StepCase {
   std::function<model::Model()> build_without_contact;
 };
 
-/// The tree of the contact search.
+/// The contact search of a sphere that touches nothing.
 struct SearchCase {
   std::string name;
   Index elements{};  ///< About
@@ -60,9 +60,8 @@ struct SearchRow {
   Index elements{};
   Index nodes{};
   int threads{};
-  Rate points;   ///< Sorted into trees [1/s]
-  Rate queries;  ///< By the boxes of elements [1/s]
-  double points_per_query{};
+  Rate trees;     ///< Elements whose blocks are put into trees [1/s]
+  Rate searches;  ///< Elements in whole searches [1/s]
 };
 
 /// Builds a case once and measures it on any numbers of threads. Throws when a run ends by a fault.
@@ -81,7 +80,7 @@ class StepMeasurement {
   std::vector<model::Model> without_contact_;  // One at most
 };
 
-/// Every repetition of builds and of queries takes about `seconds`.
+/// Every repetition of trees and of searches takes about `seconds`.
 [[nodiscard]] SearchRow measure_search(const SearchCase& search_case, int threads, double seconds);
 
 }  // namespace fexp::bench

@@ -21,6 +21,15 @@ SearchScene::SearchScene(Index elements) : sphere(bench::sphere(elements)), skin
     }
     boxes.push_back(box.grown(sphere.half_thickness.front() + skin));
   }
+  for (const model::ElementBlock& block : sphere.blocks) {
+    Box box;
+    for (Index e = block.first; e < block.first + block.count; ++e) {
+      for (const Index n : sphere.triangle[at(e)]) {
+        box.include(sphere.reference_position[at(n)]);
+      }
+    }
+    block_boxes.push_back(box);
+  }
 }
 
 void ask_all(const contact::KdTree& tree, const std::vector<Box>& boxes, std::vector<Index>& found) {

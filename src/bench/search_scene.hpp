@@ -15,8 +15,9 @@ struct SearchScene {
   explicit SearchScene(Index elements);
 
   model::Model sphere;
-  double skin{};           ///< By how much the boxes are grown beyond contact distance [length]
-  std::vector<Box> boxes;  ///< Of the elements, as the search grows them
+  double skin{};                 ///< By how much the boxes are grown beyond contact distance [length]
+  std::vector<Box> boxes;        ///< Of the elements, as the search grows them
+  std::vector<Box> block_boxes;  ///< Of the nodes of blocks of elements
 };
 
 /// Asks the tree of the sphere's nodes by the boxes of all elements; sets for each of them how many nodes were found.

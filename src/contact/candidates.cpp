@@ -11,109 +11,138 @@ namespace fexp::contact {
 
 namespace {
 
-constexpr Index piece_elements = 256;
-constexpr Index point_grain = 4096;
-/// Distances are rounded; a pair on the very border is taken.
-constexpr double rounding = 1.0e-9;
+constexpr Index piece_blocks = 32;
+constexpr Index block_grain = 512;
+constexpr std::size_t most_owned = 3 * at(model::block_lanes);
 
 }  // namespace
 
 void CandidateSearch::assign(const model::Model& model, std::span<const Index> bodies) {
   nodes_.clear();
-  elements_.clear();
+  blocks_.clear();
+  owned_.clear();
+  first_owned_.assign(1, 0);
   barriers_ = false;
+  std::vector<char> taken;
   for (const Index index : bodies) {
     const model::Body& body = model.bodies[at(index)];
     barriers_ = barriers_ || body.barrier;
+    const auto first_local = static_cast<Index>(nodes_.size());
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
       nodes_.push_back(n);
     }
-    for (Index e = body.elements.begin; e < body.elements.end; ++e) {
-      elements_.push_back(e);
+    taken.assign(at(body.nodes.size()), 0);
+    for (Index b = body.blocks.begin; b < body.blocks.end; ++b) {
+      const model::ElementBlock& block = model.blocks[at(b)];
+      blocks_.push_back(b);
+      for (Index e = block.first; e < block.first + block.count; ++e) {
+        for (const Index n : model.triangle[at(e)]) {
+          const Index in_body = n - body.nodes.begin;
+          if (taken[at(in_body)] != 0) {
+            continue;
+          }
+          taken[at(in_body)] = 1;
+          const double reach = model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)]);
+          owned_.push_back({{}, reach * (1.0 + distance_rounding), n, first_local + in_body});
+        }
+      }
+      first_owned_.push_back(static_cast<Index>(owned_.size()));
     }
   }
-  reach_.resize(nodes_.size());
-  parallel::for_each(node_count(), point_grain, [&](Index i) {
-    const Index n = nodes_[at(i)];
-    reach_[at(i)] = (model.half_thickness[at(n)] + model::watch_margin(model.node_size[at(n)])) * (1.0 + rounding);
-  });
-  points_.resize(nodes_.size());
-  pairs_.resize((elements_.size() + piece_elements - 1) / piece_elements);
+  node_box_.resize(blocks_.size());
+  pairs_.resize((blocks_.size() + piece_blocks - 1) / piece_blocks);
 }
 
 void CandidateSearch::search(const model::Model& model, const Positions& x, double skin,
                              std::span<const Index> remembered, Candidates& found) {
-  parallel::for_each(node_count(), point_grain, [&](Index i) { points_[at(i)] = x(nodes_[at(i)]); });
+  take_nodes(x);
   if (barriers_) {
-    take_points(model, skin);
-    tree_.build(near_points_, near_reach_);
-  } else {
-    tree_.build(points_, reach_);
+    leave_out_far_barriers(model, skin);
   }
+  tree_.build(node_box_);
   query(model, x, skin);
   fill_rows(remembered, found);
 }
 
+void CandidateSearch::take_nodes(const Positions& x) {
+  parallel::for_each(static_cast<Index>(blocks_.size()), block_grain, [&](Index i) {
+    Box box;
+    for (Index k = first_owned_[at(i)]; k < first_owned_[at(i) + 1]; ++k) {
+      NearNode& node = owned_[at(k)];
+      node.point = x(node.node);
+      box.include(Box{node.point, node.point}.grown(node.reach));
+    }
+    node_box_[at(i)] = box;
+  });
+}
+
 /// Barriers do not touch each other: of their nodes only those near other bodies are looked for. A barrier may be far
 /// larger than the island.
-void CandidateSearch::take_points(const model::Model& model, double skin) {
-  const auto is_free = [&](std::size_t i) { return !model.bodies[at(model.node_body[at(nodes_[i])])].barrier; };
+void CandidateSearch::leave_out_far_barriers(const model::Model& model, double skin) {
+  const auto is_barrier = [&](std::size_t i) { return model.bodies[at(model.blocks[at(blocks_[i])].body)].barrier; };
   free_ = {};
-  Box corners;
-  double thickest = 0.0, farthest = 0.0;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (is_free(i)) {
-      corners.include(points_[i]);
-      thickest = std::max(thickest, model.half_thickness[at(nodes_[i])]);
-      farthest = std::max(farthest, reach_[i]);
+  double thickest = 0.0;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (!is_barrier(i)) {
+      free_.include(node_box_[i]);
+      for (Index k = first_owned_[i]; k < first_owned_[i + 1]; ++k) {
+        thickest = std::max(thickest, model.half_thickness[at(owned_[at(k)].node)]);
+      }
     }
   }
-  free_ = corners.grown(farthest * (1.0 + rounding));
-  const Box touched = corners.grown((thickest + skin) * (1.0 + 2.0 * rounding));
-  near_.clear();
-  near_points_.clear();
-  near_reach_.clear();
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (is_free(i) || touched.grown(reach_[i]).contains(points_[i])) {
-      near_.push_back(static_cast<Index>(i));
-      near_points_.push_back(points_[i]);
-      near_reach_.push_back(reach_[i]);
+  // Reaches are larger than half thicknesses, so that the elements of the other bodies lie well inside.
+  const Box touched = free_.grown((thickest + skin) * (1.0 + 2.0 * distance_rounding));
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (is_barrier(i) && !touched.overlaps(node_box_[i])) {
+      node_box_[i] = {};
     }
   }
 }
 
 void CandidateSearch::query(const model::Model& model, const Positions& x, double skin) {
+  const SearchGeometry geometry{x.motion, model.triangle.data(), model.half_thickness.data(), skin};
+  const auto blocks = static_cast<Index>(blocks_.size());
   parallel::for_each(static_cast<Index>(pairs_.size()), 1, [&](Index piece) {
     std::vector<Pair>& pairs = pairs_[at(piece)];
     pairs.clear();
-    const Index end = std::min((piece + 1) * piece_elements, static_cast<Index>(elements_.size()));
-    for (Index k = piece * piece_elements; k < end; ++k) {
-      const Index element = elements_[at(k)];
-      const auto& t = model.triangle[at(element)];
-      const std::array<Vec3d, 3> corner{x(t[0]), x(t[1]), x(t[2])};
-      Box box;
-      for (const Vec3d& p : corner) {
-        box.include(p);
-      }
-      box = box.grown((half_thickness_of(model, element) + skin) * (1.0 + rounding));
-      if (barriers_ && !free_.overlaps(box) && model.bodies[at(body_of_element(model, element))].barrier) {
-        continue;
-      }
-      tree_.query(box, [&](Index point) {
-        const Index local = barriers_ ? near_[at(point)] : point;
-        const Index node = nodes_[at(local)];
-        // Most of what lies in the box are the element's own corners.
-        if (node == t[0] || node == t[1] || node == t[2] || !may_touch(model, node, element)) {
-          return;
-        }
-        const double watch = watch_distance(model, node, element) * (1.0 + rounding);
-        const double distance =
-            std::sqrt(physics::closest_point(points_[at(local)], corner[0], corner[1], corner[2]).distance2);
-        const double slack = distance * (1.0 - rounding) - watch;
-        if (slack <= skin) {
-          pairs.push_back({local, element, slack});
-        }
-      });
+    for (Index i = piece * piece_blocks; i < std::min((piece + 1) * piece_blocks, blocks); ++i) {
+      try_block(model, geometry, blocks_[at(i)], pairs);
+    }
+  });
+}
+
+/// Appends the pairs of one block's elements.
+void CandidateSearch::try_block(const model::Model& model, const SearchGeometry& geometry, Index index,
+                                std::vector<Pair>& pairs) const {
+  const model::ElementBlock& block = model.blocks[at(index)];
+  const NearKernel& kernel = near_kernels().back();
+  BlockTriangles triangles;  // NOLINT(cppcoreguidelines-pro-type-member-init): kernel.prepare fills it
+  kernel.prepare(geometry, block, triangles);
+  const auto lowest = [&](Index row) {
+    return *std::min_element(triangles.rows[at(row)].begin(), triangles.rows[at(row)].end());
+  };
+  const auto highest = [&](Index row) {
+    return *std::max_element(triangles.rows[at(row)].begin(), triangles.rows[at(row)].end());
+  };
+  const Box box{{lowest(row_low), lowest(row_low + 1), lowest(row_low + 2)},
+                {highest(row_high), highest(row_high + 1), highest(row_high + 2)}};
+  const bool barrier = model.bodies[at(block.body)].barrier;
+  if (barrier && !free_.overlaps(box)) {
+    return;
+  }
+  tree_.query(box, [&](Index other) {
+    const Index body = model.blocks[at(blocks_[at(other)])].body;
+    if ((barrier && model.bodies[at(body)].barrier) || !model.can_touch(body, block.body)) {
+      return;
+    }
+    const NearNode* const nodes = &owned_[at(first_owned_[at(other)])];
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): only what kernel.find has written is read
+    std::array<NearPair, most_owned * at(model::block_lanes)> found;
+    const Index count = kernel.find(triangles, nodes, first_owned_[at(other) + 1] - first_owned_[at(other)],
+                                    geometry.skin, found.data());
+    for (Index k = 0; k < count; ++k) {
+      const NearPair& pair = found[at(k)];
+      pairs.push_back({nodes[pair.node].local, block.first + pair.lane, pair.slack});
     }
   });
 }

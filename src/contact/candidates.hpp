@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "contact/kd_tree.hpp"
+#include "contact/box_tree.hpp"
+#include "contact/near_pairs.hpp"
 #include "contact/surface.hpp"
 
 namespace fexp::contact {
@@ -19,8 +20,9 @@ struct Candidates {
   std::vector<double> slack;
 };
 
-/// Finds candidates with a kd-tree over the nodes, asked by the boxes of the elements in parallel. What is found does
-/// not depend on the tree: pairs are taken by their exact distance and sorted.
+/// Finds candidates with a tree over boxes: every node belongs to the first block of elements that has it, and every
+/// block is tried, its elements side by side, with the nodes of the blocks whose nodes reach its box. What is found
+/// does not depend on the tree: pairs are taken by their distance and sorted.
 class CandidateSearch {
  public:
   /// Takes up the bodies to search among, ascending, barriers included.
@@ -40,22 +42,23 @@ class CandidateSearch {
     double slack;
   };
 
-  void take_points(const model::Model& model, double skin);
+  void take_nodes(const Positions& x);
+  void leave_out_far_barriers(const model::Model& model, double skin);
   void query(const model::Model& model, const Positions& x, double skin);
+  void try_block(const model::Model& model, const SearchGeometry& geometry, Index index,
+                 std::vector<Pair>& pairs) const;
   void fill_rows(std::span<const Index> remembered, Candidates& found);
 
-  std::vector<Index> nodes_;     // Of all bodies, ascending
-  std::vector<Index> elements_;  // Of all bodies, ascending
-  std::vector<Vec3d> points_;    // [nodes_]
-  std::vector<double> reach_;    // [nodes_]: half thickness and watch margin [length]
-  std::vector<Index> row_size_;  // [nodes_]
-  bool barriers_{};              // Some of the bodies are
-  Box free_;                     // What the nodes of the other bodies reach
-  std::vector<Index> near_;      // Into nodes_: those in the tree, where some are barriers'; else empty
-  std::vector<Vec3d> near_points_;
-  std::vector<double> near_reach_;
-  KdTree tree_;
-  std::vector<std::vector<Pair>> pairs_;  // By piece of elements_
+  std::vector<Index> nodes_;              // Of all bodies, ascending
+  std::vector<Index> blocks_;             // Of all bodies, ascending
+  std::vector<NearNode> owned_;           // [nodes_], by the block that has them
+  std::vector<Index> first_owned_;        // [blocks_ + 1]: into owned_
+  std::vector<Index> row_size_;           // [nodes_]
+  bool barriers_{};                       // Some of the bodies are
+  Box free_;                              // What the nodes of the other bodies reach
+  std::vector<Box> node_box_;             // [blocks_]: what the nodes of a block reach
+  BoxTree tree_;                          // Of node_box_
+  std::vector<std::vector<Pair>> pairs_;  // By piece of blocks_
 };
 
 }  // namespace fexp::contact

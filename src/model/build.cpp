@@ -194,14 +194,14 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
     plane.normal = (1.0 / norm(plane.normal)) * plane.normal;
   }
   build_sections(description, model);
-  build_bodies(description, meshes, model, errors);
+  const auto groups = build_bodies(description, meshes, model, errors);
   if (!errors.empty()) {
     return model;
   }
   CornerRows rows = corner_rows(model.node_count(), model.triangle);
   model.corner_start = std::move(rows.start);
   model.corner = std::move(rows.corner);
-  build_node_sets(description, meshes, model, errors);
+  build_node_sets(description, groups, model, errors);
   build_point_masses(description, model);
   build_masses(model);
   check_masses(description, model, errors);

@@ -59,11 +59,13 @@ Index section_index(const Description& description, const std::string& name) {
 /// One body's mesh, placed and ordered, ready to be copied into the model.
 struct PlacedMesh {
   std::vector<Vec3d> position;
+  std::vector<std::int64_t> node_label;
   std::vector<Triangle> triangle;   // sorted by section
   std::vector<Index> part;          // [triangles]
   std::vector<Index> section;       // [triangles]
   std::vector<std::int64_t> label;  // [triangles]
   std::vector<Triangle> neighbour;  // [triangles]
+  std::vector<NodeGroup> groups;
 };
 
 std::string section_names(const Description& description) {
@@ -107,6 +109,30 @@ std::vector<Index> part_sections(const Description& description, const BodyDescr
     }
   }
   return sections;
+}
+
+/// Gives the nodes of a placed mesh their numbers in the body.
+void number_nodes(const Mesh& mesh, PlacedMesh& placed) {
+  const std::vector<Index> number = node_numbers(mesh.position.size(), placed.triangle);
+  const std::vector<Vec3d> position = std::move(placed.position);
+  placed.position.resize(position.size());
+  placed.node_label.resize(position.size());
+  parallel::for_each(static_cast<Index>(position.size()), mesh_grain, [&](Index n) {
+    placed.position[at(number[at(n)])] = position[at(n)];
+    placed.node_label[at(number[at(n)])] = mesh.node_label.empty() ? n : mesh.node_label[at(n)];
+  });
+  parallel::for_each(static_cast<Index>(placed.triangle.size()), mesh_grain, [&](Index t) {
+    for (Index& n : placed.triangle[at(t)]) {
+      n = number[at(n)];
+    }
+  });
+  placed.groups = mesh.node_groups;
+  for (NodeGroup& group : placed.groups) {
+    for (Index& n : group.nodes) {
+      n = number[at(n)];
+    }
+    std::sort(group.nodes.begin(), group.nodes.end());
+  }
 }
 
 PlacedMesh place_mesh(const BodyDescription& body, const Mesh& mesh, const Surface& surface,
@@ -160,6 +186,7 @@ PlacedMesh place_mesh(const BodyDescription& body, const Mesh& mesh, const Surfa
     placed.section[at(i)] = sections[at(mesh.part[at(t)])];
     placed.label[at(i)] = mesh.triangle_label.empty() ? t : mesh.triangle_label[at(t)];
   });
+  number_nodes(mesh, placed);
   return placed;
 }
 
@@ -176,7 +203,7 @@ void append_blocks(const PlacedMesh& placed, Index first_element, Index body, Mo
   }
 }
 
-void append_copy(const PlacedMesh& placed, const Mesh& mesh, const std::string& name, Index description_index,
+void append_copy(const PlacedMesh& placed, const std::string& name, Index description_index,
                  const BodyDescription& description, const Vec3d& shift, Model& model) {
   Body body;
   body.name = name;
@@ -188,13 +215,7 @@ void append_copy(const PlacedMesh& placed, const Mesh& mesh, const std::string& 
     model.reference_position.push_back(position + shift);
   }
   model.node_body.insert(model.node_body.end(), placed.position.size(), index);
-  if (mesh.node_label.empty()) {
-    for (std::size_t n = 0; n < placed.position.size(); ++n) {
-      model.node_label.push_back(static_cast<std::int64_t>(n));
-    }
-  } else {
-    model.node_label.insert(model.node_label.end(), mesh.node_label.begin(), mesh.node_label.end());
-  }
+  model.node_label.insert(model.node_label.end(), placed.node_label.begin(), placed.node_label.end());
   const auto offset = [](const Triangle& t, Index by) {
     Triangle moved = t;
     for (Index& i : moved) {
@@ -252,7 +273,9 @@ void check_reach(const BodyDescription& body, const Mesh& mesh, const PlacedMesh
 
 }  // namespace
 
-void build_bodies(const Description& description, std::span<const Mesh> meshes, Model& model, ErrorList& errors) {
+std::vector<std::vector<NodeGroup>> build_bodies(const Description& description, std::span<const Mesh> meshes,
+                                                 Model& model, ErrorList& errors) {
+  std::vector<std::vector<NodeGroup>> groups(description.bodies.size());
   double nodes = 0.0, elements = 0.0;
   for (std::size_t b = 0; b < description.bodies.size(); ++b) {
     const auto& array = description.bodies[b].array;
@@ -267,7 +290,7 @@ void build_bodies(const Description& description, std::span<const Mesh> meshes, 
                fmt::format("the model would have {:.0f} elements and {:.0f} nodes", elements, nodes),
                fmt::format("at most {} elements and {} nodes", most_elements, most_nodes),
                "use coarser meshes or smaller arrays");
-    return;
+    return groups;
   }
   reserve(static_cast<std::size_t>(nodes), static_cast<std::size_t>(elements), model);
   for (std::size_t b = 0; b < description.bodies.size(); ++b) {
@@ -283,19 +306,21 @@ void build_bodies(const Description& description, std::span<const Mesh> meshes, 
     if (errors.size() != before) {
       continue;
     }
-    const PlacedMesh placed = place_mesh(body, mesh, surface, sections);
+    PlacedMesh placed = place_mesh(body, mesh, surface, sections);
     check_reach(body, mesh, placed, errors);
     const Array array = body.array.value_or(Array{});
     for (int k = 0; k < array.count[2]; ++k) {
       for (int j = 0; j < array.count[1]; ++j) {
         for (int i = 0; i < array.count[0]; ++i) {
           const std::string name = body.array ? fmt::format("{}[{},{},{}]", body.name, i, j, k) : body.name;
-          append_copy(placed, mesh, name, static_cast<Index>(b), body,
+          append_copy(placed, name, static_cast<Index>(b), body,
                       {i * array.pitch.x, j * array.pitch.y, k * array.pitch.z}, model);
         }
       }
     }
+    groups[b] = std::move(placed.groups);
   }
+  return groups;
 }
 
 }  // namespace fexp::model

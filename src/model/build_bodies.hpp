@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "base/errors.hpp"
 #include "model/mesh.hpp"
@@ -9,11 +10,15 @@
 
 namespace fexp::model {
 
-/// Appends every copy of every described body: nodes, elements, blocks, sections, initial velocities.
-void build_bodies(const Description& description, std::span<const Mesh> meshes, Model& model, ErrorList& errors);
+/// Appends every copy of every described body: nodes, elements, blocks, sections, initial velocities. Returns the node
+/// groups of each described body's mesh by the numbers that nodes have in the body, shape [described bodies].
+[[nodiscard]] std::vector<std::vector<NodeGroup>> build_bodies(const Description& description,
+                                                               std::span<const Mesh> meshes, Model& model,
+                                                               ErrorList& errors);
 
-/// Expands node sets, the set "all" first.
-void build_node_sets(const Description& description, std::span<const Mesh> meshes, Model& model, ErrorList& errors);
+/// Expands node sets, the set "all" first. `groups` are those that build_bodies returned.
+void build_node_sets(const Description& description, std::span<const std::vector<NodeGroup>> groups, Model& model,
+                     ErrorList& errors);
 
 /// Puts point masses on nodes; node sets must be expanded.
 void build_point_masses(const Description& description, Model& model);

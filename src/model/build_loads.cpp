@@ -11,7 +11,8 @@
 
 namespace fexp::model {
 
-void build_node_sets(const Description& description, std::span<const Mesh> meshes, Model& model, ErrorList& errors) {
+void build_node_sets(const Description& description, std::span<const std::vector<NodeGroup>> groups, Model& model,
+                     ErrorList& errors) {
   NamedNodes all{"all", {}};
   for (Index n = 0; n < model.node_count(); ++n) {
     all.nodes.push_back(n);
@@ -19,7 +20,7 @@ void build_node_sets(const Description& description, std::span<const Mesh> meshe
   model.node_sets.push_back(std::move(all));
   const BodyNames names(model);
   for (const NodeSet& set : description.node_sets) {
-    model.node_sets.push_back({set.name, select_nodes(set, meshes, model, names, errors)});
+    model.node_sets.push_back({set.name, select_nodes(set, groups, model, names, errors)});
   }
 }
 

@@ -2,6 +2,7 @@
 #include "model/mesh_order.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "model/patch_cut.hpp"
 #include "parallel/parallel.hpp"
@@ -29,10 +30,7 @@ void halve(std::span<Centre> centres, Index blocks, Index count, Index first, In
   for (const Centre& centre : centres) {
     box.include(centre.point);
   }
-  const Vec3d extent = box.high - box.low;
-  double Vec3d::*const axis = extent.x >= extent.y && extent.x >= extent.z ? &Vec3d::x
-                              : extent.y >= extent.z                       ? &Vec3d::y
-                                                                           : &Vec3d::z;
+  double Vec3d::*const axis = longest_axis(box);
   const Index middle = first + (last - first) / 2;
   const Index cut = block_lanes * (patch_begin(blocks, count, middle) - patch_begin(blocks, count, first));
   const auto half = centres.begin() + cut;
@@ -65,6 +63,26 @@ void order_by_place(const std::vector<Vec3d>& position, const std::vector<Triang
   });
   halve(centres, blocks, count, 0, count);
   std::ranges::transform(centres, order.begin(), &Centre::triangle);
+}
+
+std::vector<Index> node_numbers(std::size_t nodes, std::span<const Triangle> triangle) {
+  std::vector<Index> number(nodes, no_index);
+  if (triangle.size() <= at(patch_elements)) {
+    std::iota(number.begin(), number.end(), 0);
+    return number;
+  }
+  Index next = 0;
+  for (const Triangle& corners : triangle) {
+    for (const Index n : corners) {
+      if (number[at(n)] == no_index) {
+        number[at(n)] = next++;
+      }
+    }
+  }
+  for (Index& n : number) {
+    n = n == no_index ? next++ : n;
+  }
+  return number;
 }
 
 }  // namespace fexp::model

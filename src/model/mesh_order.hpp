@@ -15,4 +15,9 @@ namespace fexp::model {
 /// patch stay as they are.
 void order_by_place(const std::vector<Vec3d>& position, const std::vector<Triangle>& triangle, std::span<Index> order);
 
+/// Numbers nodes in the order in which `triangle` meets them, so that those of triangles near each other are near each
+/// other too, however a mesh file numbers them; nodes of no triangle come last. Returns the new number of each node,
+/// shape [nodes]. For triangles of a single patch the numbers stay as they are.
+[[nodiscard]] std::vector<Index> node_numbers(std::size_t nodes, std::span<const Triangle> triangle);
+
 }  // namespace fexp::model

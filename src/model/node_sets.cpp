@@ -118,8 +118,8 @@ std::vector<Index> BodyNames::find(std::span<const std::string> names, const Pla
   return bodies;
 }
 
-std::vector<Index> select_nodes(const NodeSet& set, std::span<const Mesh> meshes, const Model& model,
-                                const BodyNames& names, ErrorList& errors) {
+std::vector<Index> select_nodes(const NodeSet& set, std::span<const std::vector<NodeGroup>> body_groups,
+                                const Model& model, const BodyNames& names, ErrorList& errors) {
   const std::size_t errors_before = errors.size();
   if (!check_box(set, errors)) {
     return {};
@@ -139,7 +139,7 @@ std::vector<Index> select_nodes(const NodeSet& set, std::span<const Mesh> meshes
   for (const Index b : bodies) {
     const Body& body = model.bodies[at(b)];
     const NodeGroup* group = nullptr;
-    for (const NodeGroup& candidate : meshes[at(body.description)].node_groups) {
+    for (const NodeGroup& candidate : body_groups[at(body.description)]) {
       if (candidate.name == set.group) {
         group = &candidate;
       }

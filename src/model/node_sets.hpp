@@ -31,8 +31,8 @@ class BodyNames {
 };
 
 /// Nodes that satisfy all selections of a set, ascending. A set without nodes and names that are not there are errors.
-/// `meshes` are those the bodies were built from.
-[[nodiscard]] std::vector<Index> select_nodes(const NodeSet& set, std::span<const Mesh> meshes, const Model& model,
-                                              const BodyNames& names, ErrorList& errors);
+/// `body_groups` are those of the described bodies, by the numbers of nodes in them.
+[[nodiscard]] std::vector<Index> select_nodes(const NodeSet& set, std::span<const std::vector<NodeGroup>> body_groups,
+                                              const Model& model, const BodyNames& names, ErrorList& errors);
 
 }  // namespace fexp::model

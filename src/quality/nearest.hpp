@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -86,17 +87,26 @@ template <class BodyOf>
   return found;
 }
 
-/// A finding about a group of pairs: its bodies, count, and the labels of the first pairs.
+/// A finding about a group of pairs: its bodies, count, and the labels of the first pairs, ascending.
 template <class LabelOf>
 [[nodiscard]] Finding finding_of(const model::Model& model, const PairGroup& group, const LabelOf& label_of) {
   Finding finding;
   finding.body = model.bodies[at(group.body)].family;
   finding.other_body = group.same_body ? "" : model.bodies[at(group.other_body)].family;
+  std::vector<std::pair<std::int64_t, std::int64_t>> labels;
+  labels.reserve(group.pairs.size());
   for (const auto& [a, b] : group.pairs) {
-    if (finding.ids.size() < most_ids) {
-      finding.other_ids.push_back(label_of(b));
+    labels.emplace_back(label_of(a), label_of(b));
+    if (group.same_body && labels.back().first > labels.back().second) {
+      std::swap(labels.back().first, labels.back().second);
     }
-    add_item(finding, label_of(a));
+  }
+  std::sort(labels.begin(), labels.end());
+  for (const auto& [a, b] : labels) {
+    if (finding.ids.size() < most_ids) {
+      finding.other_ids.push_back(b);
+    }
+    add_item(finding, a);
   }
   return finding;
 }

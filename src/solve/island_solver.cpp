@@ -47,10 +47,14 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
   border_pieces_.clear();
   elements_ = 0;
   nodes_ = 0;
+  held_ = false;
+  prescribed_ = false;
   for (const Index index : bodies_) {
     const model::Body& body = model.bodies[at(index)];
     elements_ += body.elements.size();
     nodes_ += body.nodes.size();
+    prescribed_ = prescribed_ || body.prescribed.size() > 0;
+    held_ = held_ || prescribed_ || body.fixed.size() > 0 || body.symmetry.size() > 0 || body.oblique.size() > 0;
     for (Index p = patches.body_patches[at(index)].begin; p < patches.body_patches[at(index)].end; ++p) {
       patch_pieces_.push_back(static_cast<Index>(pieces_.size()));
       pieces_.push_back({index, p, patches.inner_node.data(), patches.patches[at(p)].nodes});
@@ -108,11 +112,9 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
         load_nodes(step);
       }
       // Held nodes are seen to before velocities change.
-      const bool held =
-          !model.fixed.empty() || !model.symmetry.empty() || !model.oblique.empty() || !model.prescribed.empty();
-      advance_pieces(step, held ? Pass::accelerate : Pass::accelerate_and_close);
+      advance_pieces(step, held_ ? Pass::accelerate : Pass::accelerate_and_close);
       act_on_bodies(step);
-      if (held) {
+      if (held_) {
         close_pieces(step);
       }
       book_closing_half(step);
@@ -184,7 +186,7 @@ void IslandSolver::opening_half(const Step& step) {
   const auto count = static_cast<Index>(pieces_.size());
   const Index pieces_per_task = grain(pieces_.size(), nodes_, task_nodes);
   // One pass over the nodes unless prescribed velocities come in between.
-  const bool in_one = step.model.prescribed.empty();
+  const bool in_one = !prescribed_;
   parallel::for_each(count, pieces_per_task, [&](Index i) {
     partials_[at(i)] = {};
     kick(step, pieces_[at(i)], partials_[at(i)]);
@@ -218,7 +220,7 @@ void IslandSolver::move(const Step& step, const Piece& piece, Partial& partial) 
 }
 
 void IslandSolver::prescribe(const Step& step, HalfStep half) {
-  if (step.model.prescribed.empty()) {
+  if (!prescribed_) {
     return;
   }
   const double time = half == HalfStep::opening ? step.middle_time() : step.end_time;

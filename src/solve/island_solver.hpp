@@ -134,6 +134,8 @@ class IslandSolver {
   Index elements_{};
   Index nodes_{};
   bool contact_written_{};
+  bool held_{};  // Nodes of the island are held or prescribed
+  bool prescribed_{};
 };
 
 }  // namespace fexp::solve

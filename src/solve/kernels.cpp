@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/kernels.hpp"
 
+#include "base/processor.hpp"
 #include "solve/kernels/element_kernel.hpp"
 #include "solve/kernels/node_kernel.hpp"
 #include "solve/kernels/step_kernel.hpp"
 
 namespace fexp::solve {
-
-namespace {
-
-#if defined(__x86_64__)
-bool has_avx2() noexcept { return __builtin_cpu_supports("avx2") != 0; }
-bool has_avx512() noexcept {
-  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
-         __builtin_cpu_supports("avx512vl") != 0;
-}
-#endif
-
-}  // namespace
 
 SelectedKernel select_element_kernel(KernelChoice choice) noexcept {
   const SelectedKernel scalar{kernels::update_blocks_scalar, kernels::update_nodes_scalar,

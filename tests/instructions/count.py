@@ -33,7 +33,7 @@ PARTS = {
     "critical step": ("fexp::solve::kernels::smallest_step_{kernel}", "element"),
     "contact forces": ("fexp::contact::IslandContact::evaluate", "element and step"),
     "search": ("fexp::contact::CandidateSearch::search", "node and search"),
-    "tree": ("fexp::contact::KdTree::build", "node and search"),
+    "tree": ("fexp::contact::BoxTree::build", "node and search"),
 }
 
 

@@ -195,13 +195,14 @@ std::vector<Vec3d> end_positions(bool rotated, const Conditions& conditions) {
   const solve::Diagnostics end = solve::diagnostics(model, run.state);
   EXPECT_NEAR(end.energies.balance(), solve::diagnostics(model, model::initial_state(model)).energies.balance(),
               1e-2 * (end.energies.kinetic + end.energies.internal));
-  std::vector<Vec3d> positions;
-  const Vec3d origin = model.reference_position[0];
+  std::vector<Vec3d> positions(at(model.node_count()));  // By label
+  const auto first = std::find(model.node_label.begin(), model.node_label.end(), 0) - model.node_label.begin();
+  const Vec3d origin = model.reference_position[static_cast<std::size_t>(first)];
   const Vec3d x = rotated ? turned({1.0, 0.0, 0.0}) : Vec3d{1.0, 0.0, 0.0};
   const Vec3d y = rotated ? turned({0.0, 1.0, 0.0}) : Vec3d{0.0, 1.0, 0.0};
-  for (const model::NodeMotion& motion : run.state.motion) {
-    const Vec3d r = motion.position - origin;
-    positions.push_back({dot(r, x), dot(r, y), dot(r, cross(x, y))});
+  for (Index n = 0; n < model.node_count(); ++n) {
+    const Vec3d r = run.state.motion[at(n)].position - origin;
+    positions[static_cast<std::size_t>(model.node_label[at(n)])] = {dot(r, x), dot(r, y), dot(r, cross(x, y))};
   }
   return positions;
 }

@@ -167,6 +167,12 @@ CASES = {
                                          "velocity = 1.0")),
         "Two prescribed motions": Case(('[[fixed]]\nset = "rim"', "".join(
             f'[[prescribed]]\nset = "rim"\ndof = "z"\nvelocity = {v}\n\n' for v in (1.0, 2.0)))),
+        "A displacement and a velocity": Case(('[[fixed]]\nset = "rim"', '[[prescribed]]\nset = "rim"\ndof = "z"\n'
+                                               "velocity = 1.0\ndisplacement = 1.0")),
+        "A displacement at once": Case(('[[fixed]]\nset = "rim"', '[[prescribed]]\nset = "rim"\ndof = "z"\n'
+                                        "displacement = 1.0")),
+        "Axes that span no plane": Case(('set = "rim"', 'set = "rim"\ndofs = ["x"]\n'
+                                         "axes = { x = [1.0, 0.0, 0.0], xy = [2.0, 0.0, 0.0] }")),
         "Copies in one place": Case(("translate = [0.0, 0.0, 0.15]", "translate = [0.0, 0.0, 0.15]\n"
                                      "array = { count = [2, 1, 1], pitch = [0.0, 0.0, 0.0] }")),
         "A curve that goes back in time": Case(('set = "rim"', 'set = "rim"\n\n[[curve]]\nname = "ramp"\n'

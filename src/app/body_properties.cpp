@@ -34,7 +34,7 @@ Moments triangle_moments(const model::Model& model, Index element, const Vec3d& 
   const Vec3d normal = cross(x[1] - x[0], x[2] - x[0]);
   const double t = section.thickness;
   Moments m;
-  m.mass = section.density * t * model.reference_area[at(element)];
+  m.mass = model.mass_factor(element) * section.density * t * model.reference_area[at(element)];
   m.first = m.mass * centroid;
   for (const Vec3d& corner : x) {
     add_scaled(m.mass / 12.0, products(corner), m.second);
@@ -57,6 +57,16 @@ BodyProperties properties(const model::Model& model, IndexRange elements, IndexR
     sum.mass += m.mass;
     sum.first += m.first;
     add_scaled(1.0, m.second, sum.second);
+  }
+  for (const model::AddedNode& point : model.point_masses) {
+    if (nodes.contains(point.node)) {
+      const Vec3d x = model.reference_position[at(point.node)] - origin;
+      sum.mass += point.mass;
+      sum.first += point.mass * x;
+      add_scaled(point.mass, products(x), sum.second);
+      // As of a sphere: half of it in each of two directions makes the inertia about the third.
+      add_scaled(0.5 * point.inertia, {1.0, 1.0, 1.0, 0.0, 0.0, 0.0}, sum.second);
+    }
   }
   const Vec3d offset = (1.0 / sum.mass) * sum.first;
   add_scaled(-sum.mass, products(offset), sum.second);

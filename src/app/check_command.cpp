@@ -9,6 +9,7 @@
 
 #include "app/body_properties.hpp"
 #include "app/command.hpp"
+#include "app/findings_report.hpp"
 #include "app/load.hpp"
 #include "app/options.hpp"
 #include "app/print.hpp"
@@ -25,13 +26,12 @@ namespace {
 constexpr double trial_seconds = 1.0;
 /// Bodies told of one by one; --json tells of all.
 constexpr std::size_t most_bodies = 30;
-/// Output in fewer steps than this shortens them noticeably.
-constexpr double few_steps = 5.0;
 
 struct CheckOptions {
   std::string deck;
   int threads{};
   bool json{};
+  bool strict{};
 };
 
 /// All that the command tells.
@@ -42,6 +42,7 @@ struct CheckReport {
   std::int64_t frames{};
   double results_bytes{};  ///< Of the results file, not compressed
   Trial trial;
+  std::vector<quality::Finding> findings;
 
   [[nodiscard]] double step() const { return loaded.model.run.safety * loaded.model.first_critical_step; }
   [[nodiscard]] const std::string& slowest_body() const {
@@ -64,8 +65,8 @@ double frame_bytes(const model::Model& model) {
   return bytes;
 }
 
-CheckReport make_report(const Case& loaded) {
-  CheckReport report{loaded, {}, total_properties(loaded.model), 0, 0.0, {}};
+CheckReport make_report(const Case& loaded, const std::vector<model::Mesh>& meshes) {
+  CheckReport report{loaded, {}, total_properties(loaded.model), 0, 0.0, {}, {}};
   for (Index b = 0; b < loaded.model.body_count(); ++b) {
     report.bodies.push_back(body_properties(loaded.model, b));
   }
@@ -73,6 +74,7 @@ CheckReport make_report(const Case& loaded) {
   report.frames = Schedule(loaded.model.run.duration, output.results_interval, output.history_interval).frames();
   report.results_bytes = frame_bytes(loaded.model) * static_cast<double>(report.frames);
   report.trial = run_trial(loaded, trial_seconds);
+  report.findings = all_findings(loaded, meshes, report.trial);
   return report;
 }
 
@@ -110,27 +112,6 @@ std::string bodies_text(const CheckReport& report) {
   return text + properties_text(report.total, report.loaded.deck.units);
 }
 
-/// What is allowed but seldom meant.
-std::string warnings_text(const CheckReport& report) {
-  const Case& loaded = report.loaded;
-  const Trial& trial = report.trial;
-  std::string text;
-  if (!trial.touching.empty()) {
-    text += fmt::format(
-        "  warning: {} bodies penetrate something at the start, the first is \"{}\", and will be pushed apart; move "
-        "them so far apart that their thicknesses do not overlap, or leave the pair out with contact.exclude\n",
-        trial.touching.size(), loaded.model.bodies[at(trial.touching.front())].name);
-  }
-  const double shorter = std::min(loaded.deck.output.results_interval, loaded.deck.output.history_interval);
-  if (shorter < few_steps * report.step()) {
-    text += fmt::format(
-        "  warning: output every {:.4g} {} is every {:.3g} steps, and steps are shortened to meet it; longer output "
-        "intervals make the run faster\n",
-        shorter, loaded.deck.units.of("time"), shorter / report.step());
-  }
-  return text;
-}
-
 std::string report_text(const CheckReport& report) {
   const Case& loaded = report.loaded;
   const Trial& trial = report.trial;
@@ -146,7 +127,7 @@ std::string report_text(const CheckReport& report) {
   text += fmt::format("  time: about {} with {} threads, without output; trial of {} steps, {}\n",
                       wall_time_text(trial.expected_seconds), parallel::thread_count(), trial.steps,
                       rate_text(trial.element_steps_per_second));
-  return text + warnings_text(report);
+  return text + findings_text(report.findings);
 }
 
 nlohmann::ordered_json properties_json(const BodyProperties& p) {
@@ -188,14 +169,21 @@ nlohmann::ordered_json report_json(const CheckReport& report) {
           {"trial_steps", trial.steps},
           {"element_steps_per_second", trial.element_steps_per_second},
           {"touching_bodies", trial.touching.size()},
-          {"trial_fault", trial.last.fault.message}};
+          {"trial_fault", trial.last.fault.message},
+          {"findings", findings_json(report.findings)}};
+}
+
+bool any_warning(const std::vector<quality::Finding>& findings) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const quality::Finding& f) { return f.severity == quality::Severity::warning; });
 }
 
 ExitCode check(const CheckOptions& options) {
   ExitCode code = ExitCode::done;
   parallel::with_threads(options.threads, [&] {
-    const Case loaded = load_case(options.deck);
-    const CheckReport report = make_report(loaded);
+    std::vector<model::Mesh> meshes;
+    const Case loaded = load_case(options.deck, meshes);
+    const CheckReport report = make_report(loaded, meshes);
     if (options.json) {
       print_json(report_json(report));
     } else {
@@ -205,6 +193,8 @@ ExitCode check(const CheckOptions& options) {
     if (fault.kind != cluster::FaultKind::none) {
       print_error(fmt::format("fexp: the trial stopped: {}; cure: {}\n", fault.message, fault.cure));
       code = ExitCode::fault;
+    } else if (options.strict && any_warning(report.findings)) {
+      code = ExitCode::wrong_input;
     }
   });
   return code;
@@ -215,13 +205,14 @@ std::function<ExitCode()> declare(CLI::App& app) {
   add_deck_option(app, options->deck);
   add_threads_option(app, options->threads);
   add_json_option(app, options->json, "Print JSON");
+  app.add_flag("--strict", options->strict, "Exit with 2 when there are warnings");
   return [options] { return check(*options); };
 }
 
 }  // namespace
 
 const Command check_command{"check",
-                            "Validate a deck; tell masses, the smallest step, memory and the time a run will take",
+                            "Validate a deck; tell masses, smallest step, what is odd, and how long a run will take",
                             "  fexp check four_spheres.toml", declare};
 
 }  // namespace fexp::app

@@ -37,13 +37,23 @@ Case load_case(const fs::path& deck) {
 }
 
 Case load_case(const fs::path& deck, io::InputFiles& files) {
+  std::vector<model::Mesh> meshes;
+  return load_case(deck, files, meshes);
+}
+
+Case load_case(const fs::path& deck, std::vector<model::Mesh>& meshes) {
+  io::InputFiles files;
+  return load_case(deck, files, meshes);
+}
+
+Case load_case(const fs::path& deck, io::InputFiles& files, std::vector<model::Mesh>& meshes) {
   Case loaded;
   loaded.deck_bytes = read_deck(deck, files);
   ErrorList errors;
   loaded.deck = io::parse_deck(loaded.deck_bytes, deck.string(), errors);
   errors.throw_if_any();
   check_intervals(loaded.deck, errors);
-  const std::vector<model::Mesh> meshes = io::load_meshes(loaded.deck, deck.parent_path(), files, errors);
+  meshes = io::load_meshes(loaded.deck, deck.parent_path(), files, errors);
   if (!errors.empty()) {
     // Without all meshes no model; what can be said without them is said.
     model::check_description(loaded.deck.description, errors);

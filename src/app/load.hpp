@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "io/deck.hpp"
 #include "io/input_files.hpp"
+#include "model/mesh.hpp"
 #include "model/model.hpp"
 
 namespace fexp::app {
@@ -22,5 +24,9 @@ struct Case {
 [[nodiscard]] Case load_case(const std::filesystem::path& deck, io::InputFiles& files);
 /// Likewise, from the disk.
 [[nodiscard]] Case load_case(const std::filesystem::path& deck);
+/// Likewise, with the meshes that the model was built from.
+[[nodiscard]] Case load_case(const std::filesystem::path& deck, std::vector<model::Mesh>& meshes);
+[[nodiscard]] Case load_case(const std::filesystem::path& deck, io::InputFiles& files,
+                             std::vector<model::Mesh>& meshes);
 
 }  // namespace fexp::app

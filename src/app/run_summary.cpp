@@ -7,6 +7,7 @@
 
 #include "app/placement_report.hpp"
 #include "app/progress.hpp"
+#include "model/added_mass.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::app {
@@ -51,6 +52,13 @@ std::string energies_text(const solve::Energies& a, const solve::Energies& b, co
          line("external", a.external, b.external) + line("balance", a.balance(), b.balance());
 }
 
+std::string added_mass_text(const io::Summary::AddedMass& part, const std::string& unit) {
+  const double share = part.added / part.mass;
+  return fmt::format("  {}mass scaling added {:.4g} {} to part \"{}\" of body \"{}\", {:.2g} %\n",
+                     share > model::much_added_mass ? "warning: " : "", part.added, unit, part.part, part.body,
+                     100.0 * share);
+}
+
 /// Names of all files but the directory's, which they share.
 std::string files_text(const io::Summary& summary) {
   if (summary.files.empty()) {
@@ -93,6 +101,9 @@ io::Summary summarise(const Case& loaded, const cluster::Simulation& simulation,
   }
   summary.kernel = simulation.workspace().kernel.name;
   add_extremes(simulation.extremes(), summary);
+  for (const model::AddedMass& part : model::added_masses(model)) {
+    summary.added_mass.push_back({part.body, part.part, part.mass, part.added});
+  }
   summary.placement = placement_of(simulation);
   summary.network = network_of(simulation);
   if (end.reason == EndReason::fault) {
@@ -110,6 +121,9 @@ std::string summary_text(const io::Summary& s, const io::UnitNames& units, const
                       units.of("time"), s.steps, s.step_smallest, s.step_largest);
   if (s.residual) {
     text += fmt::format("  static     residual {:.2e}\n", *s.residual);
+  }
+  for (const io::Summary::AddedMass& part : s.added_mass) {
+    text += added_mass_text(part, units.of("mass"));
   }
   text += energies_text(start.energies, present.energies, units.of("force*length"));
   text +=

@@ -16,19 +16,42 @@ constexpr double velocity_margin = 1.25;
 constexpr double free_play = 0.01;
 constexpr Index node_piece = 4096;
 
-/// Largest speed that prescribed motion can give a node of the body [length/time].
-double prescribed_speed(const model::Model& model, const model::Body& body) {
+/// Largest value of a curve, whichever its sign.
+double largest_value(const model::Model& model, Index curve) {
+  double largest = curve == no_index ? 1.0 : 0.0;
+  if (curve != no_index) {
+    for (const auto& point : model.curves[at(curve)].points) {
+      largest = std::max(largest, std::abs(point[1]));
+    }
+  }
+  return largest;
+}
+
+/// Largest slope of a curve, whichever its sign [1/time].
+double largest_slope(const model::Model& model, Index curve) {
+  double largest = 0.0;
+  if (curve != no_index) {
+    const auto& points = model.curves[at(curve)].points;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      largest = std::max(largest, std::abs((points[i][1] - points[i - 1][1]) / (points[i][0] - points[i - 1][0])));
+    }
+  }
+  return largest;
+}
+
+/// Largest speed that prescribed motion can give a node of the body within `span`, besides the one it has
+/// [length/time].
+double prescribed_speed(const model::Model& model, const model::Body& body, double span) {
   double largest = 0.0;
   for (Index i = body.prescribed.begin; i < body.prescribed.end; ++i) {
     const model::PrescribedNode& p = model.prescribed[at(i)];
-    double factor = 1.0;
-    if (p.curve != no_index) {
-      factor = 0.0;
-      for (const auto& point : model.curves[at(p.curve)].points) {
-        factor = std::max(factor, std::abs(point[1]));
-      }
+    if (p.dof >= 3) {
+      continue;
     }
-    largest = p.dof < 3 ? std::max(largest, std::abs(p.velocity) * factor) : largest;
+    const double rate = p.kind == model::PrescribedKind::displacement   ? largest_slope(model, p.curve)
+                        : p.kind == model::PrescribedKind::acceleration ? largest_value(model, p.curve) * span
+                                                                        : largest_value(model, p.curve);
+    largest = std::max(largest, std::abs(p.value) * rate);
   }
   // Up to three components of a node may be prescribed.
   return std::sqrt(3.0) * largest;
@@ -76,8 +99,10 @@ double travel_allowance(const model::Model& model, Index body, const BodyExtent&
   if (model.bodies[at(body)].barrier) {
     return 0.0;
   }
-  const double speed = extent.speed + 0.5 * dt * extent.acceleration + prescribed_speed(model, model.bodies[at(body)]);
-  return velocity_margin * speed * dt * static_cast<double>(steps) + free_play * extent.size;
+  const auto count = static_cast<double>(steps);
+  const double speed =
+      extent.speed + 0.5 * dt * extent.acceleration + prescribed_speed(model, model.bodies[at(body)], dt * count);
+  return velocity_margin * speed * dt * count + free_play * extent.size;
 }
 
 Box swept_box(const BodyExtent& extent, double allowance) { return extent.box.grown(allowance + extent.reach); }

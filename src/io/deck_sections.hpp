@@ -25,13 +25,16 @@ void for_each_section(SomeDeck& deck, Visitor& visitor) {
                "Named nodes: those of the bodies that satisfy every selection given. The set \"all\" is there already.",
                optional, d.node_sets);
   visitor.list("fixed", "Degrees of freedom that are held at rest.", optional, d.fixed);
-  visitor.list("prescribed", "A velocity prescribed on one degree of freedom.", optional, d.prescribed);
+  visitor.list("prescribed",
+               "A motion prescribed on one degree of freedom: its velocity, displacement or acceleration.", optional,
+               d.prescribed);
   visitor.list("symmetry",
                "A plane of mirror symmetry: no velocity along its normal, no rotation about axes in the plane.",
                optional, d.symmetry);
   visitor.list("gravity", "An acceleration of all nodes.", optional, d.gravity);
   visitor.list("pressure", "A pressure on faces.", optional, d.pressure);
   visitor.list("force", "Forces and moments on nodes.", optional, d.forces);
+  visitor.list("point_mass", "Masses on nodes, besides those of the shells.", optional, d.point_masses);
   visitor.list("plane", "A rigid plane that nodes cannot pass.", optional, d.planes);
   visitor.table("contact", "Contact between bodies, and of each with itself; on unless switched off.", optional,
                 d.contact);

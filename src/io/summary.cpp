@@ -53,6 +53,14 @@ ordered_json fault_part(const Summary::FaultPlace& f) {
   return json;
 }
 
+ordered_json added_mass_part(const std::vector<Summary::AddedMass>& parts) {
+  ordered_json list = ordered_json::array();
+  for (const Summary::AddedMass& part : parts) {
+    list.push_back({{"body", part.body}, {"part", part.part}, {"mass", part.mass}, {"added", part.added}});
+  }
+  return list;
+}
+
 ordered_json placement_part(const Summary::Placement& p) {
   ordered_json machines = ordered_json::array(), frames = ordered_json::array();
   for (const auto& machine : p.machines) {
@@ -110,6 +118,7 @@ ordered_json to_json(const Summary& s) {
   json["contacts_most"] = s.contacts_most;
   json["searches"] = s.searches;
   json["deepest_penetration"] = s.deepest_penetration;
+  json["added_mass"] = added_mass_part(s.added_mass);
   json["kernel"] = s.kernel;
   if (s.exit_reason == "fault") {
     json["fault"] = fault_part(s.fault);

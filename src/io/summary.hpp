@@ -62,6 +62,15 @@ struct Summary {
     std::string cure;
   } fault;
 
+  /// What mass scaling gave one part of a body.
+  struct AddedMass {
+    std::string body;
+    std::string part;
+    double mass{};   ///< Without it [mass]
+    double added{};  ///< [mass]
+  };
+  std::vector<AddedMass> added_mass;
+
   /// Who held what. Machines in the order in which they joined.
   struct Placement {
     struct MachineLine {

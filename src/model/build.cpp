@@ -5,18 +5,29 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
-#include "base/pack.hpp"
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
+#include "model/element_shares.hpp"
 #include "model/node_sets.hpp"
 #include "model/topology.hpp"
 #include "parallel/parallel.hpp"
-#include "physics/critical_step.hpp"
 
 namespace fexp::model {
 
 namespace {
+
+void build_curve_areas(Model& model) {
+  for (const Curve& curve : model.curves) {
+    std::vector<double>& areas = model.curve_areas.emplace_back();
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      const auto& [time, value] = curve.points[i];
+      areas.push_back(i == 0 ? 0.0
+                             : areas.back() + 0.5 * (time - curve.points[i - 1][0]) * (value + curve.points[i - 1][1]));
+    }
+  }
+}
 
 void build_sections(const Description& description, Model& model) {
   for (const Section& section : description.sections) {
@@ -38,51 +49,31 @@ void build_sections(const Description& description, Model& model) {
   }
 }
 
-/// What elements bring to the nodes at their corners, and their critical steps, shape [elements] each.
-struct ElementShares {
-  explicit ElementShares(std::size_t elements) : mass(elements), inertia(elements), step(elements) {}
-
-  std::vector<double> mass;     // Of one corner [mass]
-  std::vector<double> inertia;  // Of one corner [mass*length^2]
-  std::vector<double> step;     // [time]
-};
-
-/// The elements of one block side by side, as the roots of a critical step are found one after the other.
-void share_block(const ElementBlock& block, Model& model, ElementShares& shares) {
-  using Lanes = Pack<block_lanes>;
-  Vec3<Lanes> side_12, side_13;
-  for (Index lane = 0; lane < block_lanes; ++lane) {
-    const Triangle& t = model.triangle[at(block.first + std::min(lane, block.count - 1))];
-    const Vec3d& origin = model.reference_position[at(t[0])];
-    const Vec3d a = model.reference_position[at(t[1])] - origin, b = model.reference_position[at(t[2])] - origin;
-    side_12.x.set_lane(lane, a.x);
-    side_12.y.set_lane(lane, a.y);
-    side_12.z.set_lane(lane, a.z);
-    side_13.x.set_lane(lane, b.x);
-    side_13.y.set_lane(lane, b.y);
-    side_13.z.set_lane(lane, b.z);
+/// Gives elements that need a smaller step than asked for as much mass as it takes: the step goes with its root.
+void scale_masses(Model& model, ElementShares& shares) {
+  const double target = model.run.minimum_step / model.run.safety;
+  const auto is_short = [&](double step) { return step < target; };
+  if (std::none_of(shares.step.begin(), shares.step.end(), is_short)) {
+    return;
   }
-  const auto frame = physics::triangle_frame(side_12, side_13);
-  const SectionData& section = model.sections[at(block.section)];
-  const Lanes step =
-      physics::element_critical_step({section.thickness, section.moduli, model.run.drilling}, section.density, frame);
-  for (Index lane = 0; lane < block.count; ++lane) {
-    const std::size_t e = at(block.first + lane);
-    const double area = 0.5 * frame.doubled_area.lane(lane);
-    model.reference_area[e] = area;
-    shares.mass[e] = physics::corner_mass(section.density, section.thickness, area);
-    shares.inertia[e] = physics::corner_inertia(shares.mass[e], section.thickness, area);
-    shares.step[e] = step.lane(lane);
+  model.step_factor.assign(shares.step.size(), 1.0);
+  for (std::size_t e = 0; e < shares.step.size(); ++e) {
+    if (is_short(shares.step[e])) {
+      const double factor = target / shares.step[e];
+      model.step_factor[e] = factor;
+      shares.mass[e] *= factor * factor;
+      shares.inertia[e] *= factor * factor;
+      shares.step[e] *= factor;
+    }
   }
 }
 
 /// Lumped masses and inertias, areas, half thicknesses and penalty stiffnesses; each node gathers its own corners.
 void build_masses(Model& model) {
   const std::size_t elements = model.triangle.size(), nodes = model.reference_position.size();
-  ElementShares shares(elements);
-  model.reference_area.resize(elements);
-  parallel::for_each(model.block_count(), 1024 / block_lanes,
-                     [&](Index block) { share_block(model.blocks[at(block)], model, shares); });
+  ElementShares shares = element_shares(model);
+  model.reference_area = std::move(shares.area);
+  scale_masses(model, shares);
   model.first_critical_step = HUGE_VAL;
   for (std::size_t e = 0; e < elements; ++e) {
     if (shares.step[e] < model.first_critical_step) {
@@ -109,7 +100,13 @@ void build_masses(Model& model) {
     model.inertia[at(n)] = inertia;
     model.half_thickness[at(n)] = 0.5 * thickness;
     model.node_size[at(n)] = std::sqrt(area);
-    model.contact_stiffness[at(n)] = model.contact.penalty_scale * mass * frequency * frequency;
+  });
+  for (const AddedNode& point : model.point_masses) {
+    model.mass[at(point.node)] += point.mass;
+    model.inertia[at(point.node)] += point.inertia;
+  }
+  parallel::for_each(model.node_count(), 1024, [&](Index n) {
+    model.contact_stiffness[at(n)] = model.contact.penalty_scale * model.mass[at(n)] * frequency * frequency;
   });
   for (Body& body : model.bodies) {
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
@@ -191,6 +188,7 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   model.run = description.run;
   model.contact = description.contact;
   model.curves = description.curves;
+  build_curve_areas(model);
   model.planes = description.planes;
   for (RigidPlane& plane : model.planes) {
     plane.normal = (1.0 / norm(plane.normal)) * plane.normal;
@@ -203,11 +201,13 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   CornerRows rows = corner_rows(model.node_count(), model.triangle);
   model.corner_start = std::move(rows.start);
   model.corner = std::move(rows.corner);
+  build_node_sets(description, groups, model, errors);
+  build_point_masses(description, model);
   build_masses(model);
   check_masses(description, model, errors);
   build_velocities(description, model);
   build_exclusions(description, model, errors);
-  build_conditions(description, meshes, groups, model, errors);
+  build_conditions(description, meshes, model, errors);
   return model;
 }
 

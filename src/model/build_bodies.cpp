@@ -296,6 +296,7 @@ std::vector<std::vector<NodeGroup>> build_bodies(const Description& description,
   for (std::size_t b = 0; b < description.bodies.size(); ++b) {
     const BodyDescription& body = description.bodies[b];
     const Mesh& mesh = meshes[b];
+    model.part_names.push_back(mesh.part_names);
     const std::size_t before = errors.size();
     const Surface surface = check_mesh(mesh, body.mesh_place, body.name, errors);
     if (errors.size() != before) {

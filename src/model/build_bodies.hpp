@@ -16,9 +16,15 @@ namespace fexp::model {
                                                                std::span<const Mesh> meshes, Model& model,
                                                                ErrorList& errors);
 
-/// Expands node sets and puts conditions and loads on nodes and elements, sorted, with each body's ranges. `meshes` are
-/// those given to build_bodies, `groups` what it returned.
-void build_conditions(const Description& description, std::span<const Mesh> meshes,
-                      std::span<const std::vector<NodeGroup>> groups, Model& model, ErrorList& errors);
+/// Expands node sets, the set "all" first. `groups` are those that build_bodies returned.
+void build_node_sets(const Description& description, std::span<const std::vector<NodeGroup>> groups, Model& model,
+                     ErrorList& errors);
+
+/// Puts point masses on nodes; node sets must be expanded.
+void build_point_masses(const Description& description, Model& model);
+
+/// Puts conditions and loads on nodes and elements, sorted, with each body's ranges. Node sets must be expanded;
+/// `meshes` are those given to build_bodies.
+void build_conditions(const Description& description, std::span<const Mesh> meshes, Model& model, ErrorList& errors);
 
 }  // namespace fexp::model

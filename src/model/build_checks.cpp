@@ -144,6 +144,47 @@ void check_placement(const BodyDescription& body, ErrorList& errors) {
   }
 }
 
+void check_axes(const std::optional<LocalAxes>& axes, const std::string& set, const Place& place, ErrorList& errors) {
+  if (axes && !(has_direction(axes->x) && has_direction(axes->xy) && has_direction(cross(axes->x, axes->xy)))) {
+    errors.add(place, fmt::format("the axes of the condition on set \"{}\" span no plane", set),
+               "x and xy that are neither zero nor parallel", "correct the axes");
+  }
+}
+
+/// One motion, and a displacement that does not jump, as that would take a boundless speed.
+void check_prescribed(const Prescribed& p, const std::vector<Curve>& curves, ErrorList& errors) {
+  check_dof(p.dof, p.place, errors);
+  check_axes(p.axes, p.set, p.place, errors);
+  const int given = (p.velocity ? 1 : 0) + (p.displacement ? 1 : 0) + (p.acceleration ? 1 : 0);
+  if (given != 1) {
+    errors.add(p.place,
+               fmt::format("set \"{}\" is given {} prescribed motions for one degree of freedom", p.set, given),
+               "one of velocity, displacement and acceleration", given == 0 ? "add one of them" : "keep one of them");
+  }
+  const auto curve =
+      std::find_if(curves.begin(), curves.end(), [&](const Curve& candidate) { return candidate.name == p.curve; });
+  if (!p.displacement || (curve == curves.end() && !p.curve.empty()) ||
+      (curve != curves.end() && curve->points.empty())) {
+    return;
+  }
+  double start = 1.0;
+  bool jumps = false;
+  if (curve != curves.end()) {
+    const auto& points = curve->points;
+    start = value_of(*curve, 0.0);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      jumps = jumps || points[i][0] == points[i - 1][0];
+    }
+  }
+  if (start != 0.0 || jumps) {
+    errors.add(p.place,
+               start != 0.0
+                   ? fmt::format("the displacement of set \"{}\" is {:g} times its size at the start", p.set, start)
+                   : fmt::format("the displacement of set \"{}\" jumps", p.set),
+               "a curve that is 0 at time 0 and has no time twice", "let the displacement grow from zero by its curve");
+  }
+}
+
 /// Smallest component of a unit normal that is taken for more than rounding.
 constexpr double least_component = 1.0e-9;
 
@@ -155,8 +196,9 @@ double along(const Vec3d& normal, Index dof) {
 
 /// A plane of symmetry lets translations in the plane and rotation about its normal free; a prescribed motion must be
 /// one of these.
-bool prescribed_clashes(const Vec3d& normal, Index dof) {
-  return dof < 3 ? along(normal, dof) > least_component : along(normal, dof) < 1.0 - least_component;
+bool prescribed_clashes(const Vec3d& normal, const PrescribedNode& p) {
+  const double part = std::abs(dot(normal, p.direction));
+  return p.dof < 3 ? part > least_component : part < 1.0 - least_component;
 }
 
 /// Holding one axis that is oblique to the plane couples the others, which the masks of fixed nodes cannot express.
@@ -224,6 +266,7 @@ void check_description(const Description& description, ErrorList& errors) {
     check_placement(body, errors);
   }
   for (const Fixed& fixed : description.fixed) {
+    check_axes(fixed.axes, fixed.set, fixed.place, errors);
     if (fixed.dofs.empty()) {
       errors.add(fixed.place, fmt::format("nothing is fixed on set \"{}\"", fixed.set),
                  name_list(std::vector<std::string>(dof_names.begin(), dof_names.end())),
@@ -234,7 +277,7 @@ void check_description(const Description& description, ErrorList& errors) {
     }
   }
   for (const Prescribed& prescribed : description.prescribed) {
-    check_dof(prescribed.dof, prescribed.place, errors);
+    check_prescribed(prescribed, description.curves, errors);
   }
   for (const Symmetry& symmetry : description.symmetry) {
     if (!has_direction(symmetry.normal)) {
@@ -255,6 +298,7 @@ void check_description(const Description& description, ErrorList& errors) {
   references(description.gravity);
   references(description.pressure);
   references(description.forces);
+  references(description.point_masses);
 }
 
 void check_symmetry(const Description& description, const Model& model, ErrorList& errors) {
@@ -272,7 +316,7 @@ void check_symmetry(const Description& description, const Model& model, ErrorLis
         clash = "fixed";
       }
       for (auto p = first_at(model.prescribed, n); p != model.prescribed.end() && p->node == n; ++p) {
-        if (prescribed_clashes(normal, p->dof)) {
+        if (prescribed_clashes(normal, *p)) {
           clash = "prescribed";
         }
       }

@@ -3,46 +3,42 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
+#include <cmath>
 
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
-#include "model/node_sets.hpp"
+#include "model/build_loads.hpp"
+#include "model/held_directions.hpp"
 
 namespace fexp::model {
 
 namespace {
 
-/// Looks sets and curves up by name while conditions are expanded; check_description has found them all.
-class Lookup {
- public:
-  explicit Lookup(const Model& model) : model_(model) {}
-
-  [[nodiscard]] const std::vector<Index>& nodes(const std::string& set) const {
-    const auto found = std::find_if(model_.node_sets.begin(), model_.node_sets.end(),
-                                    [&](const NamedNodes& named) { return named.name == set; });
-    assert(found != model_.node_sets.end());
-    return found->nodes;
+/// Degrees of freedom of one kind of condition as a mask.
+unsigned mask_of(const std::vector<std::string>& dofs) {
+  unsigned mask = 0;
+  for (const std::string& dof : dofs) {
+    mask |= 1U << static_cast<unsigned>(dof_index(dof));
   }
-  /// The curve of that name; none for an empty name.
-  [[nodiscard]] Index curve(const std::string& name) const {
-    const auto found = std::find_if(model_.curves.begin(), model_.curves.end(),
-                                    [&](const Curve& curve) { return curve.name == name; });
-    assert(name.empty() || found != model_.curves.end());
-    return name.empty() ? no_index : static_cast<Index>(found - model_.curves.begin());
-  }
+  return mask;
+}
 
- private:
-  const Model& model_;
-};
+/// Whether all three translations, or rotations, of a mask are in it: then its axes do not matter.
+bool holds_all(unsigned mask, bool angular) noexcept { return (mask >> (angular ? 3U : 0U) & 7U) == 7U; }
+
+/// Part of a mask that can be told in the axes of the model.
+unsigned axis_mask(const Fixed& fixed) {
+  const unsigned mask = mask_of(fixed.dofs);
+  if (are_model_axes(unit_axes(fixed.axes))) {
+    return mask;
+  }
+  return (holds_all(mask, false) ? 0x07U : 0U) | (holds_all(mask, true) ? 0x38U : 0U);
+}
 
 void build_fixed(const Description& description, const Lookup& lookup, Model& model) {
   std::vector<std::uint8_t> masks(model.reference_position.size(), 0);
   for (const Fixed& fixed : description.fixed) {
-    unsigned mask = 0;
-    for (const std::string& dof : fixed.dofs) {
-      mask |= 1U << static_cast<unsigned>(dof_index(dof));
-    }
+    const unsigned mask = axis_mask(fixed);
     for (const Index n : lookup.nodes(fixed.set)) {
       masks[at(n)] = static_cast<std::uint8_t>(masks[at(n)] | mask);
     }
@@ -54,54 +50,118 @@ void build_fixed(const Description& description, const Lookup& lookup, Model& mo
   }
 }
 
-/// The condition that already holds degree of freedom `dof` of the node: of the fixed ones, or of the first `count`
-/// prescribed ones.
-std::string holder_of(const Description& description, const Lookup& lookup, std::size_t count, Index node, Index dof) {
-  const auto holds = [&](const std::string& set) {
+/// Directions that are held at an angle to the axes of the model, sorted by node. Each is made orthogonal to what is
+/// held at its node otherwise, so that conditions can be applied one after the other; one that adds nothing is left
+/// out.
+void build_oblique(const Description& description, const Lookup& lookup, Model& model) {
+  constexpr double least_new = 1.0e-6;
+  std::vector<ObliqueNode> given;
+  for (const Fixed& fixed : description.fixed) {
+    const std::array<Vec3d, 3> axes = unit_axes(fixed.axes);
+    const unsigned mask = mask_of(fixed.dofs) & ~axis_mask(fixed);
+    for (unsigned dof = 0; dof < 6; ++dof) {
+      if ((mask >> dof & 1U) != 0) {
+        for (const Index n : lookup.nodes(fixed.set)) {
+          given.push_back({n, axes[dof % 3], dof >= 3});
+        }
+      }
+    }
+  }
+  std::stable_sort(given.begin(), given.end(),
+                   [](const ObliqueNode& a, const ObliqueNode& b) { return a.node < b.node; });
+  for (const ObliqueNode& item : given) {
+    const Vec3d rest = free_part(model, item.node, item.angular, item.direction);
+    if (norm(rest) > least_new) {
+      model.oblique.push_back({item.node, (1.0 / norm(rest)) * rest, item.angular});
+    }
+  }
+}
+
+/// Directions that differ by less than this share nothing but rounding.
+constexpr double least_share = 1.0e-9;
+
+/// The condition that already holds a direction of the node, or a part of it: of the fixed ones, or of the first
+/// `count` prescribed ones.
+std::string holder_of(const Description& description, const Lookup& lookup, std::size_t count, Index node, bool angular,
+                      const Vec3d& direction) {
+  const auto holds = [&](const std::string& set, const std::optional<LocalAxes>& given, unsigned mask) {
     const std::vector<Index>& nodes = lookup.nodes(set);
-    return std::binary_search(nodes.begin(), nodes.end(), node);
+    const std::array<Vec3d, 3> axes = unit_axes(given);
+    bool shared = false;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      shared = shared ||
+               ((mask >> (angular ? axis + 3U : axis) & 1U) != 0 && std::abs(dot(axes[axis], direction)) > least_share);
+    }
+    return shared && std::binary_search(nodes.begin(), nodes.end(), node);
   };
   for (const Fixed& fixed : description.fixed) {
-    if (std::find(fixed.dofs.begin(), fixed.dofs.end(), dof_names[at(dof)]) != fixed.dofs.end() && holds(fixed.set)) {
+    if (holds(fixed.set, fixed.axes, mask_of(fixed.dofs))) {
       return fmt::format("fixed by set \"{}\"", fixed.set);
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Prescribed& p = description.prescribed[i];
-    if (dof_index(p.dof) == dof && holds(p.set)) {
+    if (holds(p.set, p.axes, 1U << static_cast<unsigned>(dof_index(p.dof)))) {
       return fmt::format("prescribed by set \"{}\"", p.set);
     }
   }
   return {};
 }
 
+/// A prescribed motion as it is for every node of its set.
+PrescribedNode prescribed_of(const Prescribed& p, const Lookup& lookup) {
+  const std::array<Vec3d, 3> axes = unit_axes(p.axes);
+  const Index dof = dof_index(p.dof);
+  PrescribedNode node;
+  node.dof = static_cast<std::int8_t>(dof);
+  node.kind = p.displacement   ? PrescribedKind::displacement
+              : p.acceleration ? PrescribedKind::acceleration
+                               : PrescribedKind::velocity;
+  node.value = p.displacement ? *p.displacement : p.acceleration ? *p.acceleration : p.velocity.value_or(0.0);
+  node.curve = lookup.curve(p.curve);
+  node.oblique = !are_model_axes(axes);
+  node.direction = axes[at(dof % 3)];
+  return node;
+}
+
+/// Symmetry is left to check_symmetry.
 void build_prescribed(const Description& description, const Lookup& lookup, Model& model, ErrorList& errors) {
-  std::vector<std::uint8_t> held(model.reference_position.size(), 0);
-  for (const FixedNode& fixed : model.fixed) {
-    held[at(fixed.node)] = fixed.mask;
+  // Nodes with any condition on translations (1) and rotations (2), for which it is worth to look closer.
+  std::vector<std::uint8_t> taken(model.reference_position.size(), 0);
+  const auto take = [&](const std::string& set, unsigned mask) {
+    const unsigned groups = ((mask & 0x07U) != 0 ? 1U : 0U) | ((mask & 0x38U) != 0 ? 2U : 0U);
+    for (const Index n : lookup.nodes(set)) {
+      taken[at(n)] = static_cast<std::uint8_t>(taken[at(n)] | groups);
+    }
+  };
+  for (const Fixed& fixed : description.fixed) {
+    take(fixed.set, mask_of(fixed.dofs));
   }
   for (std::size_t i = 0; i < description.prescribed.size(); ++i) {
     const Prescribed& p = description.prescribed[i];
-    const Index dof = dof_index(p.dof);
-    const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(dof));
-    const Index curve = lookup.curve(p.curve);
+    PrescribedNode item = prescribed_of(p, lookup);
+    const unsigned group = item.dof >= 3 ? 2U : 1U;
     bool reported = false;
     for (const Index n : lookup.nodes(p.set)) {
-      if ((held[at(n)] & bit) != 0 && !reported) {
+      item.node = n;
+      const std::string holder = reported || (taken[at(n)] & group) == 0
+                                     ? ""
+                                     : holder_of(description, lookup, i, n, item.dof >= 3, item.direction);
+      if (!holder.empty()) {
         errors.add(p.place,
                    fmt::format("set \"{}\" prescribes {} of node {} of body \"{}\", which is already {}", p.set, p.dof,
-                               model.node_label[at(n)], model.bodies[at(model.node_body[at(n)])].name,
-                               holder_of(description, lookup, i, n, dof)),
+                               model.node_label[at(n)], model.bodies[at(model.node_body[at(n)])].name, holder),
                    "one condition for each degree of freedom", "take the node out of one of the sets");
         reported = true;
       }
-      held[at(n)] = static_cast<std::uint8_t>(held[at(n)] | bit);
-      model.prescribed.push_back({n, static_cast<std::int8_t>(dof), p.velocity, curve});
+      model.prescribed.push_back(item);
     }
+    take(p.set, 1U << static_cast<unsigned>(item.dof));
   }
-  std::sort(model.prescribed.begin(), model.prescribed.end(), [](const PrescribedNode& a, const PrescribedNode& b) {
-    return a.node != b.node ? a.node < b.node : a.dof < b.dof;
-  });
+  std::stable_sort(model.prescribed.begin(), model.prescribed.end(),
+                   [](const PrescribedNode& a, const PrescribedNode& b) {
+                     return a.node != b.node ? a.node < b.node : a.dof < b.dof;
+                   });
 }
 
 /// Planes of symmetry as given, sorted by node. Where planes meet, a later normal is made orthogonal to the earlier
@@ -134,57 +194,6 @@ void build_symmetry(const Description& description, const Lookup& lookup, Model&
   }
 }
 
-void build_loads(const Description& description, const Lookup& lookup, Model& model) {
-  for (const Gravity& gravity : description.gravity) {
-    model.gravity.push_back({gravity.acceleration, lookup.curve(gravity.curve)});
-  }
-  for (const NodalForce& force : description.forces) {
-    const std::vector<Index>& nodes = lookup.nodes(force.set);
-    const double share = force.total && !nodes.empty() ? 1.0 / static_cast<double>(nodes.size()) : 1.0;
-    const Index curve = lookup.curve(force.curve);
-    for (const Index n : nodes) {
-      model.forces.push_back({n, share * force.force, share * force.moment, curve});
-    }
-  }
-  std::stable_sort(model.forces.begin(), model.forces.end(),
-                   [](const NodeLoad& a, const NodeLoad& b) { return a.node < b.node; });
-}
-
-void build_pressure(const Description& description, std::span<const Mesh> meshes, const BodyNames& names,
-                    const Lookup& lookup, Model& model, ErrorList& errors) {
-  for (const Pressure& pressure : description.pressure) {
-    const Index curve = lookup.curve(pressure.curve);
-    const std::size_t before = model.pressure.size(), errors_before = errors.size();
-    std::vector<std::string> known;
-    for (const Index b : names.find(pressure.bodies, pressure.place, "a pressure", errors)) {
-      const Body& body = model.bodies[at(b)];
-      const std::vector<std::string>& parts = meshes[at(body.description)].part_names;
-      Index part = no_index;
-      for (std::size_t p = 0; p < parts.size(); ++p) {
-        part = parts[p] == pressure.part ? static_cast<Index>(p) : part;
-        if (std::find(known.begin(), known.end(), parts[p]) == known.end()) {
-          known.push_back(parts[p]);
-        }
-      }
-      for (Index e = body.elements.begin; e < body.elements.end; ++e) {
-        if (pressure.part.empty() || model.element_part[at(e)] == part) {
-          model.pressure.push_back({e, pressure.value, curve});
-        }
-      }
-    }
-    if (model.pressure.size() == before && errors.size() == errors_before) {
-      errors.add(pressure.place,
-                 pressure.bodies.empty()
-                     ? "a pressure names no body"
-                     : fmt::format("a pressure loads no face: there is no part \"{}\"", pressure.part),
-                 name_list(pressure.bodies.empty() ? names.families() : known),
-                 pressure.bodies.empty() ? "name the bodies it loads" : "correct the part or the bodies");
-    }
-  }
-  std::stable_sort(model.pressure.begin(), model.pressure.end(),
-                   [](const PressureLoad& a, const PressureLoad& b) { return a.element < b.element; });
-}
-
 /// Range of a sorted list whose members' key lies in `keys`.
 template <class Item, class Key>
 IndexRange range_in(const std::vector<Item>& items, IndexRange keys, const Key& key) {
@@ -196,23 +205,14 @@ IndexRange range_in(const std::vector<Item>& items, IndexRange keys, const Key& 
 
 }  // namespace
 
-void build_conditions(const Description& description, std::span<const Mesh> meshes,
-                      std::span<const std::vector<NodeGroup>> groups, Model& model, ErrorList& errors) {
-  NamedNodes all{"all", {}};
-  for (Index n = 0; n < model.node_count(); ++n) {
-    all.nodes.push_back(n);
-  }
-  model.node_sets.push_back(std::move(all));
-  const BodyNames names(model);
-  for (const NodeSet& set : description.node_sets) {
-    model.node_sets.push_back({set.name, select_nodes(set, groups, model, names, errors)});
-  }
+void build_conditions(const Description& description, std::span<const Mesh> meshes, Model& model, ErrorList& errors) {
   const Lookup lookup(model);
   build_fixed(description, lookup, model);
   build_prescribed(description, lookup, model, errors);
   build_symmetry(description, lookup, model);
+  build_oblique(description, lookup, model);
   build_loads(description, lookup, model);
-  build_pressure(description, meshes, names, lookup, model, errors);
+  build_pressure(description, meshes, lookup, model, errors);
   check_symmetry(description, model, errors);
 
   const auto node_of = [](const auto& item) { return item.node; };
@@ -221,6 +221,7 @@ void build_conditions(const Description& description, std::span<const Mesh> mesh
     body.fixed = range_in(model.fixed, body.nodes, node_of);
     body.prescribed = range_in(model.prescribed, body.nodes, node_of);
     body.symmetry = range_in(model.symmetry, body.nodes, node_of);
+    body.oblique = range_in(model.oblique, body.nodes, node_of);
     body.forces = range_in(model.forces, body.nodes, node_of);
     body.pressure = range_in(model.pressure, body.elements, [](const PressureLoad& p) { return p.element; });
     body.barrier = body.fixed.size() == body.nodes.size() &&

@@ -178,34 +178,57 @@ struct NodeSet {
   };
 };
 
+/// Axes at an angle to those of the model: z = x cross `xy`, y = z cross x, each made a unit vector.
+struct LocalAxes {
+  Vec3d x{1.0, 0.0, 0.0};
+  Vec3d xy{0.0, 1.0, 0.0};  ///< In the local xy plane, on the side of y
+
+  static constexpr auto fields = std::tuple{
+      Field{"x", "-", "Direction of the local x axis.", &LocalAxes::x, any_number, Presence::required},
+      Field{"xy", "-", "A vector in the local xy plane, on the side of local y.", &LocalAxes::xy, any_number,
+            Presence::required},
+  };
+};
+
 /// Degrees of freedom held at rest: "x", "y", "z" translations, "rx", "ry", "rz" rotations.
 struct Fixed {
   std::string set;
   std::vector<std::string> dofs{"x", "y", "z", "rx", "ry", "rz"};
   Place place;
+  std::optional<LocalAxes> axes{};
 
   static constexpr auto fields = std::tuple{
       Field{"set", "-", "Node set.", &Fixed::set, any_number, Presence::required},
       Field{"dofs", "-", "Which degrees of freedom are held: translations x, y, z, rotations rx, ry, rz.", &Fixed::dofs,
             Choices(dof_names)},
+      Field{"axes", "-", "Axes of the degrees of freedom; those of the model when left out.", &Fixed::axes},
   };
 };
 
-/// Velocity prescribed as scale x curve(time) on one degree of freedom.
+/// Motion prescribed as scale x curve(time) on one degree of freedom, by one of velocity, displacement (from the
+/// initial position) and acceleration (from the initial velocity); in radians for rotations.
 struct Prescribed {
   std::string set;
   std::string dof;
-  double velocity{};  ///< [length/time], or [1/time] for rotations
-  std::string curve;  ///< Factor in time; 1 when empty.
+  std::optional<double> velocity{};  ///< [length/time] or [1/time]
+  std::string curve;                 ///< Factor in time; 1 when empty.
   Place place;
+  std::optional<double> displacement{};  ///< [length] or [-]
+  std::optional<double> acceleration{};  ///< [length/time^2] or [1/time^2]
+  std::optional<LocalAxes> axes{};
 
   static constexpr auto fields = std::tuple{
       Field{"set", "-", "Node set.", &Prescribed::set, any_number, Presence::required},
       Field{"dof", "-", "The degree of freedom that is moved.", &Prescribed::dof, Choices(dof_names),
             Presence::required},
-      Field{"velocity", "length/time or 1/time", "Velocity, multiplied by the curve.", &Prescribed::velocity,
-            any_number, Presence::required},
+      Field{"velocity", "length/time or 1/time", "Velocity, multiplied by the curve; or one of the two below.",
+            &Prescribed::velocity},
+      Field{"displacement", "length or -", "Displacement, multiplied by a curve that is zero at the start.",
+            &Prescribed::displacement},
+      Field{"acceleration", "length/time^2 or 1/time^2",
+            "Acceleration, multiplied by the curve; it begins with the initial velocity.", &Prescribed::acceleration},
       Field{"curve", "-", "Factor in time; 1 when left out.", &Prescribed::curve},
+      Field{"axes", "-", "Axes of the degree of freedom; those of the model when left out.", &Prescribed::axes},
   };
 };
 
@@ -268,6 +291,23 @@ struct NodalForce {
   };
 };
 
+/// A mass, and an inertia alike about all axes, on every node of a set, or a total shared equally among them.
+struct PointMass {
+  std::string set;
+  double mass{};     ///< [mass]
+  double inertia{};  ///< [mass*length^2]
+  bool total{false};
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"set", "-", "Node set.", &PointMass::set, any_number, Presence::required},
+      Field{"mass", "mass", "Mass added to each node of the set.", &PointMass::mass, non_negative, Presence::required},
+      Field{"inertia", "mass*length^2", "Rotary inertia added to each node, the same about all axes.",
+            &PointMass::inertia, non_negative},
+      Field{"total", "-", "The values are totals, shared equally by the nodes of the set.", &PointMass::total},
+  };
+};
+
 /// Fixed barrier: a half space that nodes cannot enter. It belongs to every island and joins none.
 struct RigidPlane {
   std::string name;
@@ -313,6 +353,7 @@ struct RunSettings {
   std::string analysis{"dynamic"};
   double duration{};                ///< [time]
   double safety{0.9};               ///< Step over the critical step [-]
+  double minimum_step{-1.0};        ///< Elements get mass to reach this step [time]; negative: none does
   double damping{0.0};              ///< Mass-proportional damping coefficient [1/time]
   double energy_drift_limit{0.05};  ///< Largest relative energy imbalance [-]
   double step_collapse{1.0e-3};     ///< Stop when the critical step falls below this part of the first one [-]
@@ -335,6 +376,9 @@ struct RunSettings {
       Field{"duration", "time", "Time to integrate over; a static analysis ends before, as soon as it is at rest.",
             &RunSettings::duration, positive, Presence::required},
       Field{"safety", "-", "Step as a part of the critical step.", &RunSettings::safety, safety_range},
+      Field{"minimum_step", "time",
+            "Mass scaling: elements that would need a smaller step get as much mass as it takes; none when left out.",
+            &RunSettings::minimum_step, positive},
       Field{"damping", "1/time", "Mass-proportional damping: force -damping x mass x velocity on every node.",
             &RunSettings::damping, non_negative},
       Field{"energy_drift_limit", "-", "The run stops when the relative energy imbalance exceeds this.",
@@ -364,6 +408,7 @@ struct Description {
   std::vector<Gravity> gravity;
   std::vector<Pressure> pressure;
   std::vector<NodalForce> forces;
+  std::vector<PointMass> point_masses;
   std::vector<RigidPlane> planes;
   ContactSettings contact;
 };

@@ -13,13 +13,30 @@ bool Model::can_touch(Index a, Index b) const noexcept {
          !std::binary_search(excluded_pairs.begin(), excluded_pairs.end(), std::pair{std::min(a, b), std::max(a, b)});
 }
 
-double curve_value(const Model& model, Index index, double time) noexcept {
-  if (index == no_index) {
-    return 1.0;
-  }
-  const auto& points = model.curves[at(index)].points;
-  const auto after = std::upper_bound(points.begin(), points.end(), time,
-                                      [](double t, const std::array<double, 2>& p) { return t < p[0]; });
+namespace {
+
+using Points = std::vector<std::array<double, 2>>;
+
+/// The first point later than a time.
+Points::const_iterator point_after(const Points& points, double time) noexcept {
+  return std::upper_bound(points.begin(), points.end(), time,
+                          [](double t, const std::array<double, 2>& p) { return t < p[0]; });
+}
+
+/// Integral of a curve from its first point to a time, which may lie before it.
+double area_to(const Model& model, Index index, double time) noexcept {
+  const Points& points = model.curves[at(index)].points;
+  const auto after = point_after(points, time);
+  const auto left = after == points.begin() ? after : after - 1;
+  return model.curve_areas[at(index)][static_cast<std::size_t>(left - points.begin())] +
+         0.5 * (time - (*left)[0]) * ((*left)[1] + value_of(model.curves[at(index)], time));
+}
+
+}  // namespace
+
+double value_of(const Curve& curve, double time) noexcept {
+  const Points& points = curve.points;
+  const auto after = point_after(points, time);
   if (after == points.begin()) {
     return points.front()[1];
   }
@@ -29,6 +46,33 @@ double curve_value(const Model& model, Index index, double time) noexcept {
   const auto& left = *(after - 1);
   const auto& right = *after;
   return left[1] + (right[1] - left[1]) * ((time - left[0]) / (right[0] - left[0]));
+}
+
+double curve_value(const Model& model, Index index, double time) noexcept {
+  return index == no_index ? 1.0 : value_of(model.curves[at(index)], time);
+}
+
+double curve_slope(const Model& model, Index index, double time) noexcept {
+  if (index == no_index) {
+    return 0.0;
+  }
+  const Points& points = model.curves[at(index)].points;
+  const auto after = point_after(points, time);
+  const auto slope = [](const std::array<double, 2>& a, const std::array<double, 2>& b) {
+    return (b[1] - a[1]) / (b[0] - a[0]);
+  };
+  const bool inside = after != points.begin() && after != points.end();
+  const double right = inside ? slope(*(after - 1), *after) : 0.0;
+  const bool corner = after != points.begin() && (*(after - 1))[0] == time;
+  if (!corner) {
+    return right;
+  }
+  const double left = after - 1 == points.begin() ? 0.0 : slope(*(after - 2), *(after - 1));
+  return 0.5 * (left + right);
+}
+
+double curve_integral(const Model& model, Index index, double time) noexcept {
+  return index == no_index ? time : area_to(model, index, time) - area_to(model, index, 0.0);
 }
 
 }  // namespace fexp::model

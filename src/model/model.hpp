@@ -47,6 +47,7 @@ struct Body {
   IndexRange fixed;       ///< Into Model::fixed.
   IndexRange prescribed;  ///< Into Model::prescribed.
   IndexRange symmetry;    ///< Into Model::symmetry.
+  IndexRange oblique;     ///< Into Model::oblique.
   IndexRange pressure;    ///< Into Model::pressure.
   IndexRange forces;      ///< Into Model::forces.
   bool barrier{};         ///< Every node is held in all degrees of freedom: part of every island, joins none.
@@ -59,11 +60,24 @@ struct FixedNode {
   std::uint8_t mask{};
 };
 
+/// A direction at an angle to the axes in which a node does not move, or about which it does not turn.
+struct ObliqueNode {
+  Index node{};
+  Vec3d direction{};  ///< Unit vector, orthogonal to all other directions that are held at the node
+  bool angular{};
+};
+
+/// What of a motion is prescribed.
+enum class PrescribedKind : std::uint8_t { velocity, displacement, acceleration };
+
 struct PrescribedNode {
   Index node{};
-  std::int8_t dof{};  ///< 0..5
-  double velocity{};  ///< [length/time] or [1/time]
+  std::int8_t dof{};  ///< 0..5: translations from 0, rotations from 3
+  PrescribedKind kind{};
+  bool oblique{};  ///< `direction` is not that of an axis of the model
+  double value{};  ///< Times the curve [length/time^k] or [1/time^k], k = 1, 0, 2 by kind
   Index curve{no_index};
+  Vec3d direction{};  ///< Unit vector
 };
 
 struct SymmetryNode {
@@ -82,6 +96,13 @@ struct NodeLoad {
   Vec3d force{};   ///< [force]
   Vec3d moment{};  ///< [force*length]
   Index curve{no_index};
+};
+
+/// Mass and isotropic inertia on a node besides those of its elements; part of Model::mass and Model::inertia.
+struct AddedNode {
+  Index node{};
+  double mass{};     ///< [mass]
+  double inertia{};  ///< [mass*length^2]
 };
 
 struct GravityLoad {
@@ -119,20 +140,27 @@ struct Model {
   std::vector<Index> element_part;          ///< Part (physical group) index within the body's mesh
   std::vector<double> reference_area;       ///< [length^2]
   std::vector<std::int64_t> element_label;  ///< The user's id of the element.
+  /// Critical step with the mass that mass scaling gave the element over that without, >= 1; its mass is the square of
+  /// this times that of the material. Empty when no element got any.
+  std::vector<double> step_factor;
 
   std::vector<ElementBlock> blocks;
   std::vector<SectionData> sections;
   std::vector<Body> bodies;
+  std::vector<std::vector<std::string>> part_names;  ///< Of the described bodies' meshes, by element_part
 
   // Conditions and loads, each sorted by node or element; a body's own lie in the ranges its Body names.
   std::vector<FixedNode> fixed;
   std::vector<PrescribedNode> prescribed;
   std::vector<SymmetryNode> symmetry;
+  std::vector<ObliqueNode> oblique;  ///< Applied after fixed and symmetry
   std::vector<PressureLoad> pressure;
   std::vector<NodeLoad> forces;
   std::vector<GravityLoad> gravity;
+  std::vector<AddedNode> point_masses;
   std::vector<Curve> curves;
-  std::vector<RigidPlane> planes;  ///< Normals are unit vectors.
+  std::vector<std::vector<double>> curve_areas;  ///< Integral of each curve from its first point to each of them [time]
+  std::vector<RigidPlane> planes;                ///< Normals are unit vectors.
   std::vector<NamedNodes> node_sets;
 
   ContactSettings contact;
@@ -149,6 +177,10 @@ struct Model {
   [[nodiscard]] const SectionData& section_of(Index element) const {
     return sections[at(blocks[at(element_block[at(element)])].section)];
   }
+  /// Mass of an element over that of its material.
+  [[nodiscard]] double mass_factor(Index element) const noexcept {
+    return step_factor.empty() ? 1.0 : step_factor[at(element)] * step_factor[at(element)];
+  }
   /// True when bodies a and b (which may be the same) can touch by the deck's contact settings.
   [[nodiscard]] bool can_touch(Index a, Index b) const noexcept;
 };
@@ -158,7 +190,15 @@ struct Model {
 /// sound.
 [[nodiscard]] constexpr double watch_margin(double node_size) noexcept { return 0.15 * node_size; }
 
+[[nodiscard]] double value_of(const Curve& curve, double time) noexcept;
+
 /// Value of curve `index` at `time`; 1 when index is no_index.
 [[nodiscard]] double curve_value(const Model& model, Index index, double time) noexcept;
+
+/// Its slope [1/time], at a corner the mean of both sides; no times are twice in the curve.
+[[nodiscard]] double curve_slope(const Model& model, Index index, double time) noexcept;
+
+/// Its integral from time zero [time].
+[[nodiscard]] double curve_integral(const Model& model, Index index, double time) noexcept;
 
 }  // namespace fexp::model

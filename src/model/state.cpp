@@ -108,6 +108,11 @@ State initial_state(const Model& model) {
     motion.velocity -= dot(motion.velocity, symmetry.normal) * symmetry.normal;
     motion.rotation_rate = dot(motion.rotation_rate, symmetry.normal) * symmetry.normal;
   }
+  for (const ObliqueNode& oblique : model.oblique) {
+    NodeMotion& motion = state.motion[at(oblique.node)];
+    Vec3d& rate = oblique.angular ? motion.rotation_rate : motion.velocity;
+    rate -= dot(rate, oblique.direction) * oblique.direction;
+  }
   state.history.assign(model.blocks.size() * element_rows * at(block_lanes), 0.0);
   state.sides.resize(model.bodies.size());
   state.ledger.resize(model.bodies.size());

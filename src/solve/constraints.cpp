@@ -5,8 +5,8 @@ namespace fexp::solve {
 
 namespace {
 
-double* component(Vec3d& linear, Vec3d& angular, int dof) noexcept {
-  Vec3d& v = dof < 3 ? linear : angular;
+template <class Vector>
+auto* component(Vector& v, int dof) noexcept {
   switch (dof % 3) {
     case 0:
       return &v.x;
@@ -15,6 +15,30 @@ double* component(Vec3d& linear, Vec3d& angular, int dof) noexcept {
     default:
       return &v.z;
   }
+}
+
+/// The velocity that a condition asks for at the end of a half step. A displacement asks for the one that leads to it
+/// by the end of the step: from where the node is, so that nothing adds up; rotations, which are not stored, by the
+/// curve's difference. At the end of a step its velocity is the slope of the curve.
+double prescribed_velocity(const model::Model& model, const model::PrescribedNode& p, const Vec3d& position,
+                           HalfStep half, double time, double half_dt) {
+  switch (p.kind) {
+    case model::PrescribedKind::velocity:
+      return curve_value(model, p.curve, time) * p.value;
+    case model::PrescribedKind::acceleration: {
+      const Vec3d& start = p.dof < 3 ? model.initial_velocity[at(p.node)] : model.initial_rotation_rate[at(p.node)];
+      return dot(start, p.direction) + curve_integral(model, p.curve, time) * p.value;
+    }
+    case model::PrescribedKind::displacement:
+      break;
+  }
+  if (half == HalfStep::closing) {
+    return curve_slope(model, p.curve, time) * p.value;
+  }
+  const double goal = curve_value(model, p.curve, time + half_dt) * p.value;
+  const double reached = p.dof < 3 ? dot(position - model.reference_position[at(p.node)], p.direction)
+                                   : curve_value(model, p.curve, time - half_dt) * p.value;
+  return (goal - reached) / (half_dt + half_dt);
 }
 
 /// Books the reaction that a change of acceleration stands for.
@@ -35,18 +59,27 @@ PrescribedReport prescribe_velocities(const model::Model& model, model::State& s
     const model::PrescribedNode& p = model.prescribed[at(i)];
     model::NodeMotion& motion = state.motion[at(p.node)];
     model::NodeAcceleration& acceleration = state.acceleration[at(p.node)];
-    double* velocity = component(motion.velocity, motion.rotation_rate, p.dof);
+    Vec3d& rate = p.dof < 3 ? motion.velocity : motion.rotation_rate;
+    const Vec3d& change = p.dof < 3 ? acceleration.linear : acceleration.angular;
     const double inertia = p.dof < 3 ? model.mass[at(p.node)] : model.inertia[at(p.node)];
-    const double kick = half_dt * *component(acceleration.linear, acceleration.angular, p.dof);
-    const double before = *velocity - kick;
-    const double after = curve_value(model, p.curve, time) * p.velocity;
+    const double present = p.oblique ? dot(rate, p.direction) : *component(rate, p.dof);
+    const double kick = half_dt * (p.oblique ? dot(change, p.direction) : *component(change, p.dof));
+    const double before = present - kick;
+    const double after = prescribed_velocity(model, p, motion.position, half, time, half_dt);
     const double middle = half == HalfStep::opening ? after : before;
     report.work += 0.5 * inertia * (after - before) * (after + before) - inertia * kick * middle;
-    Vec3d linear, angular;
-    *component(linear, angular, p.dof) = inertia * (after - *velocity);
-    report.impulse += linear;
-    report.angular_impulse += cross(motion.position, linear) + angular;
-    *velocity = after;
+    const Vec3d impulse = (inertia * (after - present)) * p.direction;
+    if (p.dof < 3) {
+      report.impulse += impulse;
+      report.angular_impulse += cross(motion.position, impulse);
+    } else {
+      report.angular_impulse += impulse;
+    }
+    if (p.oblique) {
+      rate += (after - present) * p.direction;
+    } else {
+      *component(rate, p.dof) = after;
+    }
   }
   return report;
 }
@@ -59,7 +92,7 @@ void hold_constraints(const model::Model& model, model::State& state, Index body
     const model::NodeAcceleration before = acceleration;
     for (int dof = 0; dof < 6; ++dof) {
       if ((fixed.mask >> dof & 1) != 0) {
-        *component(acceleration.linear, acceleration.angular, dof) = 0.0;
+        *component(dof < 3 ? acceleration.linear : acceleration.angular, dof) = 0.0;
       }
     }
     book_reaction(model, state, fixed.node, acceleration.linear - before.linear, acceleration.angular - before.angular,
@@ -73,6 +106,15 @@ void hold_constraints(const model::Model& model, model::State& state, Index body
     acceleration.linear -= dot(acceleration.linear, n) * n;
     acceleration.angular = dot(acceleration.angular, n) * n;
     book_reaction(model, state, symmetry.node, acceleration.linear - before.linear,
+                  acceleration.angular - before.angular, actions);
+  }
+  for (Index i = body.oblique.begin; i < body.oblique.end; ++i) {
+    const model::ObliqueNode& oblique = model.oblique[at(i)];
+    model::NodeAcceleration& acceleration = state.acceleration[at(oblique.node)];
+    const model::NodeAcceleration before = acceleration;
+    Vec3d& held = oblique.angular ? acceleration.angular : acceleration.linear;
+    held -= dot(held, oblique.direction) * oblique.direction;
+    book_reaction(model, state, oblique.node, acceleration.linear - before.linear,
                   acceleration.angular - before.angular, actions);
   }
 }

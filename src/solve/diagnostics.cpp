@@ -96,8 +96,9 @@ Diagnostics diagnostics(const model::Model& model, const model::State& state) {
 
 CriticalStep body_critical_step(const model::Model& model, const model::State& state, Index body) {
   const StepKernel kernel = select_element_kernel(KernelChoice::automatic).steps;
-  const StepKernelArguments arguments{state.motion.data(), model.triangle.data(), model.blocks.data(),
-                                      model.sections.data(), model.run.drilling};
+  const StepKernelArguments arguments{
+      state.motion.data(),   model.triangle.data(), model.blocks.data(),
+      model.sections.data(), model.run.drilling,    model.step_factor.empty() ? nullptr : model.step_factor.data()};
   return parallel::ordered_fold(
       model.bodies[at(body)].blocks, piece / model::block_lanes, CriticalStep{},
       [&](Index begin, Index end) { return kernel(arguments, begin, end); }, smaller);

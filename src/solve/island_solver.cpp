@@ -55,7 +55,7 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
     elements_ += body.elements.size();
     nodes_ += body.nodes.size();
     prescribed_ = prescribed_ || body.prescribed.size() > 0;
-    held_ = held_ || prescribed_ || body.fixed.size() > 0 || body.symmetry.size() > 0;
+    held_ = held_ || prescribed_ || body.fixed.size() > 0 || body.symmetry.size() > 0 || body.oblique.size() > 0;
     for (Index p = patches.body_patches[at(index)].begin; p < patches.body_patches[at(index)].end; ++p) {
       patch_pieces_.push_back(static_cast<Index>(pieces_.size()));
       pieces_.push_back({index, p, patches.inner_node.data(), patches.patches[at(p)].nodes});

@@ -83,6 +83,7 @@ struct StepKernelArguments {
   const model::ElementBlock* blocks{};     // [blocks]
   const model::SectionData* sections{};    // [sections]
   double drilling{};                       ///< Drilling factor beta [-]
+  const double* step_factor{};             // [elements]: by which mass scaling lengthens the step; none: by nothing
 };
 
 /// Smallest critical step over blocks [begin, end) in the present geometry.

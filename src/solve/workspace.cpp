@@ -23,8 +23,8 @@ Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
     body.plane_force.resize(model.planes.size());
   }
   body_contact.resize(model.bodies.size());
-  external = !load.empty() || model.run.damping > 0.0 || model.run.is_static() || !model.planes.empty() || !model.fixed.empty() ||
-             !model.prescribed.empty() || !model.symmetry.empty();
+  external = !load.empty() || model.run.damping > 0.0 || model.run.is_static() || !model.planes.empty() ||
+             !model.fixed.empty() || !model.prescribed.empty() || !model.symmetry.empty() || !model.oblique.empty();
 }
 
 }  // namespace fexp::solve

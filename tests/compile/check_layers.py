@@ -16,12 +16,14 @@ ALLOWED = {
     "physics": ["base"],
     "model": ["base", "parallel", "physics"],
     "contact": ["base", "parallel", "physics", "model"],
+    "quality": ["base", "parallel", "physics", "model", "contact"],
     "solve": ["base", "parallel", "physics", "model", "contact"],
     "cluster": ["base", "parallel", "physics", "model", "contact", "solve"],
     "io": ["base", "parallel", "physics", "model"],
     "coordinator": ["base", "io"],
     "bench": ["base", "parallel", "physics", "model", "contact", "solve", "cluster"],
-    "app": ["base", "parallel", "physics", "model", "contact", "solve", "cluster", "io", "coordinator", "bench"],
+    "app": ["base", "parallel", "physics", "model", "contact", "quality", "solve", "cluster", "io", "coordinator",
+            "bench"],
 }
 
 # Libraries that one layer hides from the others.

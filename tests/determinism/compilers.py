@@ -1,5 +1,5 @@
-#!/ usr / bin / env python3
-#SPDX - License - Identifier : Apache - 2.0
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs decks with several builds of fexp and several numbers of threads. Every run of a deck must end in the same
 state: the same bits, so the same state_hash after the same number of steps.
 

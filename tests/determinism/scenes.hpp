@@ -65,8 +65,9 @@ inline model::Description plates_at_rest() {
   return d;
 }
 
-/// A sphere thrown onto a plate with a clamped and a driven edge, everything under gravity and pressure with curves, a
-/// rigid plane below. The load that sets in suddenly has epochs rolled back.
+/// A sphere thrown onto a plate with a clamped and a driven edge, one that slides at an angle and one that is moved so
+/// and carries a mass, everything under gravity and pressure with curves, a rigid plane below. Some elements have mass
+/// added. The load that sets in suddenly has epochs rolled back.
 inline model::Description sphere_on_plate() {
   model::Description d = with_contact(0.02);
   add_body(d, "plate", plate(2.0, 20));
@@ -84,6 +85,17 @@ inline model::Description sphere_on_plate() {
   fix(d, "left", {"x", "y", "z", "rx", "ry", "rz"});
   d.prescribed.push_back({"right", "z", -0.3, "blow", {}});
   d.symmetry.push_back({"right", {0.0, 1.0, 0.0}, {}});
+  add_box_set(d, "low", {0.15, -0.01, -0.01}, {1.85, 0.01, 0.01});
+  add_box_set(d, "high", {0.15, 1.99, -0.01}, {1.85, 2.01, 0.01});
+  const model::LocalAxes axes{{1.0, 0.0, 2.0}, {0.0, 1.0, 0.0}};
+  d.fixed.push_back({"low", {"x", "rz"}, {}, axes});
+  d.curves.push_back({"push", {{0.0, 0.0}, {0.03, 1.0}, {0.05, 0.7}}, {}});
+  model::Prescribed push{"high", "z", {}, "push", {}};
+  push.displacement = 0.02;
+  push.axes = axes;
+  d.prescribed.push_back(push);
+  d.point_masses.push_back({"high", 2.0, 0.01, true, {}});
+  d.run.minimum_step = 1.3e-3;
   d.run.damping = 2.0;
   d.run.energy_drift_limit = 1.0;
   return d;

@@ -128,6 +128,12 @@ history_interval = 0.01
 nodes = ["edge"]
 bodies = ["ball"]
 deflate = 3
+
+[[point_mass]]
+set = "edge"
+mass = 0.01
+inertia = 0.02
+total = true
 )";
 
 }  // namespace fexp::test

@@ -237,6 +237,70 @@ TEST(build_errors, a_degree_of_freedom_held_twice_names_both_conditions) {
   expect_one(errors_of(d), {"set \"all\" prescribes z of node 0", "\"plate\"", "prescribed by set \"edge\""});
 }
 
+TEST(build_errors, a_direction_held_twice_in_part_is_refused_and_one_across_is_not) {
+  const LocalAxes inclined{{1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
+  Description d = good();
+  d.fixed = {{"edge", {"x"}, {}}};
+  d.prescribed = {{"edge", "x", 1.0, "", line_7}};
+  d.prescribed[0].axes = inclined;
+  expect_one(errors_of(d), {"set \"edge\" prescribes x", "fixed by set \"edge\""});
+  d.prescribed[0].dof = "z";
+  EXPECT_TRUE(errors_of(d).empty());
+  d.prescribed[0].dof = "rx";
+  EXPECT_TRUE(errors_of(d).empty()) << "a rotation is no translation";
+  d.fixed[0].axes = inclined;
+  d.prescribed[0].dof = "y";
+  EXPECT_TRUE(errors_of(d).empty()) << "at right angles";
+  d.prescribed[0].axes = {};
+  expect_one(errors_of(d), {"set \"edge\" prescribes y", "fixed by set \"edge\""});
+}
+
+TEST(build_errors, a_prescribed_motion_is_given_once) {
+  Description d = good();
+  d.prescribed = {{"edge", "x", {}, "", line_7}};
+  expect_one(errors_of(d), {"set \"edge\" is given 0 prescribed motions", "one of velocity, displacement"});
+  d.prescribed[0].acceleration = 1.0;
+  EXPECT_TRUE(errors_of(d).empty());
+  d.prescribed[0].velocity = 1.0;
+  expect_one(errors_of(d), {"set \"edge\" is given 2 prescribed motions"});
+}
+
+TEST(build_errors, a_displacement_that_jumps_is_refused) {
+  const auto with = [](std::vector<std::array<double, 2>> points, const std::string& curve) {
+    Description d = good();
+    d.curves[0].points = std::move(points);
+    d.prescribed = {{"edge", "x", {}, curve, line_7}};
+    d.prescribed[0].displacement = 2.0;
+    return errors_of(d);
+  };
+  EXPECT_TRUE(with({{0.0, 0.0}, {1.0, 1.0}}, "ramp").empty());
+  EXPECT_TRUE(with({{-1.0, -1.0}, {1.0, 1.0}}, "ramp").empty()) << "it passes zero";
+  expect_one(with({{0.0, 0.5}, {1.0, 1.0}}, "ramp"),
+             {"the displacement of set \"edge\" is 0.5 times its size at the start"});
+  expect_one(with({{0.0, 0.0}, {1.0, 1.0}}, ""), {"1 times its size at the start"});
+  expect_one(with({{0.0, 0.0}, {1.0, 1.0}, {1.0, 2.0}}, "ramp"), {"the displacement of set \"edge\" jumps"});
+}
+
+TEST(build_errors, axes_that_span_no_plane_are_refused) {
+  const std::vector<LocalAxes> wrong{
+      {{0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}}, {{1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {{1.0, 2.0, 0.0}, {2.0, 4.0, 0.0}}};
+  for (const LocalAxes& axes : wrong) {
+    Description d = good();
+    d.fixed = {{"edge", {"x"}, line_7, axes}};
+    expect_one(errors_of(d), {"the axes of the condition on set \"edge\" span no plane"});
+    d.fixed.clear();
+    d.prescribed = {{"edge", "x", 1.0, "", line_7}};
+    d.prescribed[0].axes = axes;
+    expect_one(errors_of(d), {"span no plane"});
+  }
+}
+
+TEST(build_errors, a_point_mass_on_a_set_that_is_not_there_names_those_that_are) {
+  Description d = good();
+  d.point_masses = {{"egde", 1.0, 0.0, false, line_7}};
+  expect_one(errors_of(d), {"node set \"egde\"", "all, edge"});
+}
+
 TEST(build_errors, conditions_against_a_plane_of_symmetry_are_refused) {
   const auto with = [](const Vec3d& normal, const std::string& prescribed, const std::vector<std::string>& fixed) {
     Description d = good();

@@ -136,6 +136,45 @@ TEST(deck, sets_conditions_and_loads_are_read) {
   EXPECT_EQ(d.forces[0].force, (Vec3d{1.0, 0.0, 0.0}));
   EXPECT_EQ(d.forces[0].moment, (Vec3d{0.0, 1.0, 0.0}));
   EXPECT_TRUE(d.forces[0].total);
+  ASSERT_EQ(d.point_masses.size(), 1U);
+  EXPECT_EQ(d.point_masses[0].mass, 0.01);
+  EXPECT_EQ(d.point_masses[0].inertia, 0.02);
+  EXPECT_TRUE(d.point_masses[0].total);
+}
+
+TEST(deck, prescribed_motions_local_axes_and_the_smallest_step_are_read) {
+  const model::Description d = parse_well(R"([run]
+duration = 1
+minimum_step = 1e-6
+[[body]]
+name = "a"
+mesh = {kind = "cubed_sphere", radius = 1}
+[[fixed]]
+set = "all"
+dofs = ["x"]
+axes = { x = [1, 1, 0], xy = [0, 1, 0] }
+[[prescribed]]
+set = "all"
+dof = "y"
+displacement = 2
+[prescribed.axes]
+x = [0, 0, 1]
+xy = [0, 1, 1]
+[[prescribed]]
+set = "all"
+dof = "rz"
+acceleration = -3
+)")
+                                   .description;
+  EXPECT_EQ(d.run.minimum_step, 1e-6);
+  EXPECT_EQ(d.fixed.at(0).axes.value_or(model::LocalAxes{}).x, (Vec3d{1.0, 1.0, 0.0}));
+  ASSERT_EQ(d.prescribed.size(), 2U);
+  EXPECT_EQ(d.prescribed[0].displacement, 2.0);
+  EXPECT_FALSE(d.prescribed[0].velocity.has_value());
+  EXPECT_FALSE(d.prescribed[0].acceleration.has_value());
+  EXPECT_EQ(d.prescribed[0].axes.value_or(model::LocalAxes{}).xy, (Vec3d{0.0, 1.0, 1.0}));
+  EXPECT_EQ(d.prescribed[1].acceleration, -3.0);
+  EXPECT_FALSE(d.prescribed[1].axes.has_value());
 }
 
 TEST(deck, physical_groups_of_sets_and_mesh_files_are_read) {

@@ -83,6 +83,31 @@ std::vector<std::pair<std::string, std::function<void(model::Description&)>>> ou
          d.prescribed.push_back({"right", "y", 0.8, "ramp", {}});
          d.prescribed.push_back({"right", "rx", 1.0, "ramp", {}});
        }},
+      {"moved",
+       [=](model::Description& d) {
+         add_edges(d);
+         model::Prescribed moved{"right", "z", {}, "ramp", {}};
+         moved.displacement = 0.05;
+         d.prescribed.push_back(moved);
+         model::Prescribed accelerated{"right", "rz", {}, "ramp", {}};
+         accelerated.acceleration = 8.0;
+         d.prescribed.push_back(accelerated);
+       }},
+      {"oblique",
+       [=](model::Description& d) {
+         add_edges(d);
+         const model::LocalAxes axes{{1.0, 2.0, -1.0}, {0.0, 1.0, 3.0}};
+         d.fixed.push_back({"left", {"y", "rx"}, {}, axes});
+         d.prescribed.push_back({"left", "x", 0.6, "ramp", {}});
+         d.prescribed.back().axes = axes;
+       }},
+      {"masses",
+       [=](model::Description& d) {
+         add_edges(d);
+         d.point_masses.push_back({"right", 8.0, 0.01, true, {}});
+         d.run.minimum_step = 1.0e-4;
+         d.gravity.push_back({{1.0, -2.0, -9.81}, "ramp", {}});
+       }},
       {"symmetry",
        [=](model::Description& d) {
          add_edges(d);
@@ -92,7 +117,7 @@ std::vector<std::pair<std::string, std::function<void(model::Description&)>>> ou
   auto each = actions;
   actions.emplace_back("all", [each](model::Description& d) {
     for (const auto& [name, act] : each) {
-      if (name != "symmetry") {
+      if (name != "symmetry" && name != "oblique") {
         act(d);
       }
     }

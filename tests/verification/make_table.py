@@ -45,6 +45,9 @@ CASES = {
     28: "Gravity: rest and drop on a plane",
     31: "Four spheres",
     32: "Renumbering, rotation and translation of the model",
+    33: "Strip with a tip mass",
+    34: "Damped strip",
+    35: "Prescribed displacement",
 }
 
 

@@ -49,7 +49,8 @@ inline CriticalStep smallest_step(const StepKernelArguments& k, Index begin, Ind
                                                      physics::triangle_frame(side[0], side[1]));
       for (int lane = 0; lane < width && e + lane < block_end; ++lane) {
         // A collapsed element has none, which the comparison takes for zero.
-        const double step = lane_of(steps, lane), usable = step > 0.0 ? step : 0.0;
+        const double factor = k.step_factor == nullptr ? 1.0 : k.step_factor[e + lane];
+        const double step = factor * lane_of(steps, lane), usable = step > 0.0 ? step : 0.0;
         if (usable < found.step) {
           found = {usable, e + lane};
         }

@@ -89,6 +89,9 @@ void CandidateSearch::query(const model::Model& model, const Positions& x, doubl
     const Index end = std::min((piece + 1) * piece_elements, static_cast<Index>(elements_.size()));
     for (Index k = piece * piece_elements; k < end; ++k) {
       const Index element = elements_[at(k)];
+      if (!x.has(model, element)) {
+        continue;
+      }
       const auto& t = model.triangle[at(element)];
       const std::array<Vec3d, 3> corner{x(t[0]), x(t[1]), x(t[2])};
       Box box;

@@ -32,7 +32,9 @@ struct ElementKernelArguments {
   /// one that nobody reads.
   const std::uint16_t* place{};
   NodeForce* force{};
-  double dt{};  ///< Step just taken [time]; 0 evaluates forces of the present state.
+  double dt{};                               ///< Step just taken [time]; 0 evaluates forces of the present state.
+  const model::SectionData* section_data{};  // [sections]; read for layered blocks
+  double* layers{};                          // [layered blocks][physics::layer_rows][block_lanes]
 };
 
 /// Updates resultants of blocks [begin, end) and adds their corner forces, element by element.
@@ -83,6 +85,7 @@ struct StepKernelArguments {
   const model::ElementBlock* blocks{};     // [blocks]
   const model::SectionData* sections{};    // [sections]
   double drilling{};                       ///< Drilling factor beta [-]
+  const double* layers{};                  // As those of the element kernel; deleted elements have no step
 };
 
 /// Smallest critical step over blocks [begin, end) in the present geometry.

@@ -5,8 +5,8 @@
 
 namespace fexp::solve {
 
-void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, double time, Index body_index,
-                    NodalAction* load) {
+void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, const double* layers, bool still,
+                    double time, Index body_index, NodalAction* load) {
   const model::Body& body = model.bodies[at(body_index)];
   Vec3d gravity;
   for (const model::GravityLoad& g : model.gravity) {
@@ -23,6 +23,9 @@ void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, 
   }
   for (Index i = body.pressure.begin; i < body.pressure.end; ++i) {
     const model::PressureLoad& pressure = model.pressure[at(i)];
+    if (model::is_deleted(model, layers, pressure.element, still ? 1 : 0)) {
+      continue;
+    }
     const auto& nodes = model.triangle[at(pressure.element)];
     const Vec3d a = motion[nodes[1]].position - motion[nodes[0]].position;
     const Vec3d b = motion[nodes[2]].position - motion[nodes[0]].position;

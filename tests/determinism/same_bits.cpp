@@ -42,6 +42,10 @@ const std::vector<Scene>& scenes() {
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.extremes.rollbacks > 0; }},
       {"tube_that_folds", test::tube_that_folds, 0.06,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.own_sides > 0; }},
+      {"metals", test::metals, 0.06,
+       [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.plastic_strain > 0.1; }},
+      {"shot", test::shot, 0.04,
+       [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.deleted > 9; }},
       {"swarm", test::swarm, 0.1,
        [](const test::Outcome& o) {
          return o.extremes.most_active_pairs > 20 && o.extremes.most_islands > o.extremes.fewest_islands;

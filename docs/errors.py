@@ -177,6 +177,12 @@ CASES = {
                                      "array = { count = [2, 1, 1], pitch = [0.0, 0.0, 0.0] }")),
         "A curve that goes back in time": Case(('set = "rim"', 'set = "rim"\n\n[[curve]]\nname = "ramp"\n'
                                                 "points = [[0, 0], [2, 1], [1, 1]]")),
+        "Hardening as stiff as the elastic material": Case(
+            ("poisson = 0.45", 'poisson = 0.45\nlaw = "j2_linear"\nyield = 1.0e5\ntangent_modulus = 5.0e6')),
+        "A table of hardening that falls": Case(
+            ("poisson = 0.45", 'poisson = 0.45\nlaw = "j2_table"\ntable = [[0.0, 1.0e5], [0.1, 2.0e5], [0.2, 1.9e5]]')),
+        "Too few points of Lobatto's rule": Case(
+            ("thickness = 0.005", 'thickness = 0.005\npoints = 2\nquadrature = "lobatto"')),
         "A body without a section": Case(('section = "skin"\n' + BALL_MESH, BALL_MESH)),
     },
     "Meshes": {

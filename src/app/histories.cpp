@@ -22,7 +22,8 @@ std::vector<Column> first_columns(const io::UnitNames& units) { return {{"step",
 
 std::vector<Column> energy_columns(const io::UnitNames& units) {
   std::vector<Column> columns = first_columns(units);
-  for (const char* name : {"kinetic", "internal", "contact", "barrier", "external", "damping", "balance"}) {
+  for (const char* name :
+       {"kinetic", "internal", "contact", "barrier", "external", "damping", "dissipated", "balance"}) {
     columns.push_back({name, units.of(energy)});
   }
   columns.push_back({"relative_error", ""});
@@ -45,7 +46,7 @@ std::vector<Column> steps_columns(const io::UnitNames& units) {
   columns.push_back({"dt", units.of("time")});
   columns.push_back({"critical_step", units.of("time")});
   for (const char* name : {"islands", "largest_island_elements", "candidates", "contacts", "searches", "rollbacks",
-                           "deepest_penetration"}) {
+                           "deepest_penetration", "deleted"}) {
     columns.push_back({name, ""});
   }
   return columns;
@@ -187,7 +188,7 @@ void Histories::write(const cluster::Simulation& simulation, const cluster::Epoc
 void Histories::write_energies(const cluster::Simulation& simulation, const cluster::EpochReport& report) {
   const solve::Energies& e = report.diagnostics.energies;
   energies_.row({Cell(simulation.state().step), simulation.state().time, e.kinetic, e.internal, e.contact, e.barrier,
-                 e.external, e.damping, e.balance(), report.energy_error});
+                 e.external, e.damping, e.dissipated, e.balance(), report.energy_error});
 }
 
 void Histories::write_momenta(const cluster::Simulation& simulation, const cluster::EpochReport& report) {
@@ -204,7 +205,7 @@ void Histories::write_momenta(const cluster::Simulation& simulation, const clust
 void Histories::write_steps(const cluster::Simulation& simulation, const cluster::EpochReport& report) {
   steps_.row({Cell(simulation.state().step), simulation.state().time, report.dt, report.critical.step,
               count(report.islands), count(report.largest_island_elements), count(report.candidates),
-              count(report.active_pairs), searches_, rollbacks_, deepest_});
+              count(report.active_pairs), searches_, rollbacks_, deepest_, count(report.diagnostics.deleted)});
   searches_ = rollbacks_ = 0;
   deepest_ = 0.0;
 }

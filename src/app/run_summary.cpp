@@ -47,9 +47,11 @@ std::string energies_text(const solve::Energies& a, const solve::Energies& b, co
     return fmt::format("    {:<12}{:>14.6g}{:>14.6g}\n", name, at_start, at_end);
   };
   return fmt::format("  energy [{}]   at the start    at the end\n", unit) + line("kinetic", a.kinetic, b.kinetic) +
-         line("internal", a.internal, b.internal) + line("contact", a.contact, b.contact) +
-         line("barrier", a.barrier, b.barrier) + line("damping", a.damping, b.damping) +
-         line("external", a.external, b.external) + line("balance", a.balance(), b.balance());
+         line("internal", a.internal, b.internal) +
+         (b.dissipated > 0.0 ? line("  dissipated", a.dissipated, b.dissipated) : "") +
+         line("contact", a.contact, b.contact) + line("barrier", a.barrier, b.barrier) +
+         line("damping", a.damping, b.damping) + line("external", a.external, b.external) +
+         line("balance", a.balance(), b.balance());
 }
 
 std::string added_mass_text(const io::Summary::AddedMass& part, const std::string& unit) {
@@ -135,6 +137,9 @@ std::string summary_text(const io::Summary& s, const io::UnitNames& units, const
                       p.y, p.z, units.of("force*time"), l.x, l.y, l.z, units.of("force*length*time"));
   text += fmt::format("  contact    at most {} pairs, deepest {:.1f} % of the contact distance, {} searches\n",
                       s.contacts_most, 100.0 * s.deepest_penetration, s.searches);
+  if (present.deleted > 0) {
+    text += fmt::format("  deleted    {} elements\n", present.deleted);
+  }
   text += fmt::format("  wall time  {} with {} {} ({} kernel), {}\n", wall_time_text(s.wall_seconds), s.threads,
                       s.threads == 1 ? "thread" : "threads", s.kernel, rate_text(s.element_steps_per_second));
   text += fmt::format("  state      {} after step {}\n", s.state_hash, s.steps);

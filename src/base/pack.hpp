@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <type_traits>
+
+#include "base/inline.hpp"
 
 #if defined(__AVX512F__) || defined(__AVX2__)
 #include <immintrin.h>
@@ -30,27 +33,49 @@ namespace detail {
 using Double2 = double __attribute__((vector_size(16)));
 using Double4 = double __attribute__((vector_size(32)));
 using Double8 = double __attribute__((vector_size(64)));
+using Bits2 = std::uint64_t __attribute__((vector_size(16)));
+using Bits4 = std::uint64_t __attribute__((vector_size(32)));
+using Bits8 = std::uint64_t __attribute__((vector_size(64)));
 
 template <int W>
 struct NativeVector;
 template <>
 struct NativeVector<2> {
   using Type = Double2;
+  using Bits = Bits2;
 };
 template <>
 struct NativeVector<4> {
   using Type = Double4;
+  using Bits = Bits4;
 };
 template <>
 struct NativeVector<8> {
   using Type = Double8;
+  using Bits = Bits8;
 };
+
+// Of binary64: the exponent field begins at bit 52; sums with 2^52 keep small whole numbers in the lowest bits.
+inline constexpr std::uint64_t bits_of_root_half = 0x3fe6a09e667f3bcdULL;
+inline constexpr std::uint64_t bits_of_two = 0x4000000000000000ULL;
+inline constexpr std::uint64_t bits_of_two_to_52 = 0x4330000000000000ULL;
+inline constexpr double two_to_52 = 0x1p52;
+
+/// Splits the bits of a normal positive number into those of a fraction in [sqrt(1/2), sqrt(2)) and those of
+/// 2^52 + 1024 + the exponent.
+template <class Bits>
+FEXP_INLINE void split_bits(Bits& number, Bits& exponent) noexcept {
+  const Bits biased = (number - bits_of_root_half + bits_of_two) >> 52;
+  number = number - (biased << 52) + bits_of_two;
+  exponent = biased | bits_of_two_to_52;
+}
 }  // namespace detail
 
 /// W doubles that every operation treats lane by lane, with the same rounding as scalar arithmetic.
 template <int W, InstructionSet Set>
 struct BasicPack {
   using Native = typename detail::NativeVector<W>::Type;
+  using Bits = typename detail::NativeVector<W>::Bits;
   static constexpr int width = W;
 
   Native v{};
@@ -146,6 +171,45 @@ struct BasicPack {
   friend BasicPack minimum(BasicPack a, BasicPack b) noexcept { return BasicPack(a.v < b.v ? a.v : b.v); }
   /// Lane-wise larger value; both operands must be free of NaN.
   friend BasicPack maximum(BasicPack a, BasicPack b) noexcept { return BasicPack(a.v > b.v ? a.v : b.v); }
+
+  /// `yes` in lanes where a < b, else `no`.
+  friend BasicPack select_less(BasicPack a, BasicPack b, BasicPack yes, BasicPack no) noexcept {
+    return BasicPack(a.v < b.v ? yes.v : no.v);
+  }
+  /// Whether a < b in any lane.
+  friend bool any_less(BasicPack a, BasicPack b) noexcept {
+#if defined(__AVX512F__)
+    if constexpr (W == 8) {
+      return _mm512_cmp_pd_mask(reinterpret_cast<__m512d>(a.v), reinterpret_cast<__m512d>(b.v), _CMP_LT_OQ) != 0;
+    }
+#endif
+#if defined(__AVX2__)
+    if constexpr (W == 4) {
+      return _mm256_movemask_pd(
+                 _mm256_cmp_pd(reinterpret_cast<__m256d>(a.v), reinterpret_cast<__m256d>(b.v), _CMP_LT_OQ)) != 0;
+    }
+#endif
+    bool any = false;
+    for (int i = 0; i < W; ++i) {
+      any = any || a.v[i] < b.v[i];
+    }
+    return any;
+  }
+
+  /// x = fraction * 2^exponent with the fraction, which is returned, in [sqrt(1/2), sqrt(2)); x must be positive and
+  /// normal.
+  friend BasicPack split_exponent(BasicPack x, BasicPack& exponent) noexcept {
+    auto fraction = reinterpret_cast<Bits>(x.v);
+    Bits biased;
+    detail::split_bits(fraction, biased);
+    exponent = BasicPack(reinterpret_cast<Native>(biased)) - BasicPack(detail::two_to_52 + 1024.0);
+    return BasicPack(reinterpret_cast<Native>(fraction));
+  }
+  /// x * 2^exponent for whole exponents from -1022 to 1023.
+  friend BasicPack times_power_of_two(BasicPack x, BasicPack exponent) noexcept {
+    const Native shifted = (exponent + BasicPack(detail::two_to_52 + 1023.0)).v;
+    return x * BasicPack(reinterpret_cast<Native>(reinterpret_cast<Bits>(shifted) << 52));
+  }
 };
 
 namespace detail {
@@ -237,6 +301,28 @@ using Pack = BasicPack<W, compiled_instruction_set>;
 [[nodiscard]] inline bool all_equal(double a, double b) noexcept { return a == b; }
 [[nodiscard]] inline double minimum(double a, double b) noexcept { return a < b ? a : b; }
 [[nodiscard]] inline double maximum(double a, double b) noexcept { return a > b ? a : b; }
+[[nodiscard]] FEXP_INLINE double select_less(double a, double b, double yes, double no) noexcept {
+  return a < b ? yes : no;
+}
+[[nodiscard]] FEXP_INLINE bool any_less(double a, double b) noexcept { return a < b; }
+[[nodiscard]] FEXP_INLINE double split_exponent(double x, double& exponent) noexcept {
+  std::uint64_t fraction = 0, biased = 0;
+  std::memcpy(&fraction, &x, sizeof(x));
+  detail::split_bits(fraction, biased);
+  std::memcpy(&exponent, &biased, sizeof(x));
+  exponent = exponent - (detail::two_to_52 + 1024.0);
+  std::memcpy(&x, &fraction, sizeof(x));
+  return x;
+}
+[[nodiscard]] FEXP_INLINE double times_power_of_two(double x, double exponent) noexcept {
+  const double shifted = exponent + (detail::two_to_52 + 1023.0);
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &shifted, sizeof(bits));
+  bits = bits << 52;
+  double power = 0.0;
+  std::memcpy(&power, &bits, sizeof(power));
+  return x * power;
+}
 
 /// Number of doubles in T.
 template <class T>

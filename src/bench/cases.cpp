@@ -104,6 +104,9 @@ StepCase scene_case(const char* name, Scene scene, Index elements, bool on_all_t
   if (scene == Scene::meeting_spheres) {
     made.course = Course::anew;
   }
+  if (scene == Scene::flowing_plate) {
+    made.course = Course::whole;
+  }
   if (scene == Scene::quiet_plate) {
     made.build_without_contact = [=] { return build(Scene::plate, elements); };
   }
@@ -144,6 +147,7 @@ std::vector<StepCase> step_cases(bool quick) {
   if (!quick) {
     add("plate", Scene::plate, 1'000'000, false);
   }
+  add("johnson_cook", Scene::flowing_plate, quick ? 800 : 3200, false);
   cases.push_back(four_spheres_case(sphere_cells, false));
   cases.push_back(four_spheres_case(2 * (quick ? 1 : 2) * sphere_cells, true));
   if (!quick) {

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/pack.hpp"
+
 namespace fexp::bench {
 
-/// Operations on numbers. Changes of sign and choices of the smaller number are no flops and are not counted.
+/// Operations on numbers. Changes of sign and choices between numbers are no flops and are not counted.
 struct OperationCount {
   std::int64_t additions{};  ///< And subtractions
   std::int64_t multiplications{};
@@ -54,6 +56,20 @@ class Counted {
     return std::sqrt(a.value_);
   }
   friend Counted minimum(const Counted& a, const Counted& b) noexcept { return a.value_ < b.value_ ? a : b; }
+  friend Counted maximum(const Counted& a, const Counted& b) noexcept { return a.value_ > b.value_ ? a : b; }
+  friend Counted select_less(const Counted& a, const Counted& b, const Counted& yes, const Counted& no) noexcept {
+    return a.value_ < b.value_ ? yes : no;
+  }
+  friend bool any_less(const Counted& a, const Counted& b) noexcept { return a.value_ < b.value_; }
+  friend Counted split_exponent(const Counted& x, Counted& exponent) noexcept {
+    ++count().additions;
+    return fexp::split_exponent(x.value_, exponent.value_);
+  }
+  friend Counted times_power_of_two(const Counted& x, const Counted& exponent) noexcept {
+    ++count().additions;
+    ++count().multiplications;
+    return fexp::times_power_of_two(x.value_, exponent.value_);
+  }
 
  private:
   double value_{};

@@ -57,6 +57,17 @@ model::BodyDescription plate(Index elements) {
   return made;
 }
 
+/// Steel of Johnson and Cook's law, and a spin of which it flows after a fifth of the duration, by increments of strain
+/// as in a crash.
+void let_flow(model::Description& d) {
+  physics::JohnsonCook steel;
+  static_cast<physics::J2Power&>(steel) = {{7850.0, 2.1e11, 0.3, 0.022, 1.0}, 3.5e8, 2.75e8, 0.36};
+  d.materials.front().law = steel;
+  d.sections.front().points = 3;
+  d.bodies.back().angular_velocity = {700.0, 0.0, 0.0};
+  d.run.duration = 5.0e-4;
+}
+
 /// Gravity, and the edge at the low end of x held.
 void hold(model::Description& d) {
   d.bodies.back().angular_velocity = {};
@@ -92,14 +103,17 @@ model::BodyDescription body(const std::string& name, const model::MeshGenerator&
 
 model::Model build(Scene scene, Index elements) {
   constexpr double diameter = 2.0 * sphere_radius;
-  const bool is_plate = scene == Scene::plate || scene == Scene::quiet_plate || scene == Scene::held_plate;
+  const bool is_plate = scene == Scene::plate || scene == Scene::quiet_plate || scene == Scene::flowing_plate ||
+                        scene == Scene::held_plate;
   const double thickness = relative_thickness * (is_plate ? 1.0 / plate_cells(elements) : sphere_width(sphere_cells));
   model::Description d = description(thickness);
-  d.contact.enabled = scene != Scene::plate && scene != Scene::held_plate;
+  d.contact.enabled = !is_plate || scene == Scene::quiet_plate;
   if (is_plate) {
     d.bodies.push_back(plate(elements));
     if (scene == Scene::held_plate) {
       hold(d);
+    } else if (scene == Scene::flowing_plate) {
+      let_flow(d);
     }
   } else if (scene == Scene::separate_spheres) {
     const double pitch = 1.3 * diameter;

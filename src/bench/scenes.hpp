@@ -6,13 +6,14 @@
 #include "model/build.hpp"
 #include "model/mesh_generators.hpp"
 
-/// Models of any size for the benchmarks, of steel shells.
+/// Models of any size for the benchmarks, of elastic steel shells unless it says so.
 namespace fexp::bench {
 
 /// Their shells are a fifth as thick as their elements are wide. There are no conditions and loads unless it says so.
 enum class Scene {
   plate,             ///< One plate that spins about its long edge and stretches, without contact
   quiet_plate,       ///< The same with self-contact that never touches: one island
+  flowing_plate,     ///< The spinning plate with 3 points of Johnson and Cook's law that flow everywhere
   held_plate,        ///< A plate at rest with one edge held, on which gravity begins to act; without contact
   separate_spheres,  ///< Spheres of 192 triangles that fly and spin apart from each other: an island each
   meeting_spheres,   ///< Pairs of such spheres that collide at 20 length/time from the first steps on: an island each

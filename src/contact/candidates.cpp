@@ -106,14 +106,14 @@ void CandidateSearch::query(const model::Model& model, const Positions& x, doubl
     std::vector<Pair>& pairs = pairs_[at(piece)];
     pairs.clear();
     for (Index i = piece * piece_blocks; i < std::min((piece + 1) * piece_blocks, blocks); ++i) {
-      try_block(model, geometry, blocks_[at(i)], pairs);
+      try_block(model, x, geometry, blocks_[at(i)], pairs);
     }
   });
 }
 
 /// Appends the pairs of one block's elements.
-void CandidateSearch::try_block(const model::Model& model, const SearchGeometry& geometry, Index index,
-                                std::vector<Pair>& pairs) const {
+void CandidateSearch::try_block(const model::Model& model, const Positions& x, const SearchGeometry& geometry,
+                                Index index, std::vector<Pair>& pairs) const {
   const model::ElementBlock& block = model.blocks[at(index)];
   const NearKernel& kernel = near_kernels().back();
   BlockTriangles triangles;  // NOLINT(cppcoreguidelines-pro-type-member-init): kernel.prepare fills it
@@ -142,7 +142,9 @@ void CandidateSearch::try_block(const model::Model& model, const SearchGeometry&
                                     geometry.skin, found.data());
     for (Index k = 0; k < count; ++k) {
       const NearPair& pair = found[at(k)];
-      pairs.push_back({nodes[pair.node].local, block.first + pair.lane, pair.slack});
+      if (x.has(model, block.first + pair.lane)) {
+        pairs.push_back({nodes[pair.node].local, block.first + pair.lane, pair.slack});
+      }
     }
   });
 }

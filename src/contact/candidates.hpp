@@ -45,7 +45,7 @@ class CandidateSearch {
   void take_nodes(const Positions& x);
   void leave_out_far_barriers(const model::Model& model, double skin);
   void query(const model::Model& model, const Positions& x, double skin);
-  void try_block(const model::Model& model, const SearchGeometry& geometry, Index index,
+  void try_block(const model::Model& model, const Positions& x, const SearchGeometry& geometry, Index index,
                  std::vector<Pair>& pairs) const;
   void fill_rows(std::span<const Index> remembered, Candidates& found);
 

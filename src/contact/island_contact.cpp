@@ -29,6 +29,10 @@ bool by_pair(const model::ContactSide& a, const model::ContactSide& b) noexcept 
   return a.node != b.node ? a.node < b.node : a.element < b.element;
 }
 
+Positions positions(const model::Model& model, const model::State& state, double back, bool still) noexcept {
+  return {state.motion.data(), back, model.can_fail ? state.layers.data() : nullptr, still};
+}
+
 }  // namespace
 
 Index IslandContact::owner(const model::Model& model, Index node, Index element) {
@@ -96,7 +100,7 @@ double IslandContact::relative_motion(const Positions& x) {
   return norm(moved.high - moved.low) + rounded_way_;
 }
 
-void IslandContact::advance(const model::Model& model, const model::NodeMotion* motion, double largest_way) {
+void IslandContact::advance(const model::Model& model, const model::State& state, double largest_way) {
   if (!enabled_ || !searched_) {
     return;
   }
@@ -104,7 +108,7 @@ void IslandContact::advance(const model::Model& model, const model::NodeMotion* 
   if (moved_ <= skin_) {
     return;
   }
-  const Positions x{motion, 0.0};
+  const Positions x = positions(model, state, 0.0, false);
   moved_ = relative_motion(x);
   if (moved_ > worn_part * skin_) {
     search(model, x);
@@ -171,18 +175,18 @@ void IslandContact::look(const model::Model& model, const Positions& now, const 
   piece.memory.swap(piece.next_memory);
 }
 
-ContactReport IslandContact::evaluate(const model::Model& model, const model::NodeMotion* motion, double dt,
+ContactReport IslandContact::evaluate(const model::Model& model, const model::State& state, double dt,
                                       NodeContact& nodes, BodyContact* bodies) {
   if (!enabled_) {
     return report_;
   }
-  const Positions now{motion, 0.0};
+  const bool still = dt == 0.0;
+  const Positions now = positions(model, state, 0.0, still), before = positions(model, state, dt, still);
   if (!searched_) {
     search(model, now);
   }
-  parallel::for_each(static_cast<Index>(pieces_.size()), piece_grain, [&](Index i) {
-    look(model, now, {motion, dt}, pieces_[at(i)]);
-  });
+  parallel::for_each(static_cast<Index>(pieces_.size()), piece_grain,
+                     [&](Index i) { look(model, now, before, pieces_[at(i)]); });
   report_.active_pairs = 0;
   report_.deepest = 0.0;
   report_.deepest_node = no_index;

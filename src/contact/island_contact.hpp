@@ -43,11 +43,11 @@ class IslandContact {
               const model::State& state);
 
   /// To be called when nodes have moved, none by more than `largest_way` [length]. Searches when that is needed.
-  void advance(const model::Model& model, const model::NodeMotion* motion, double largest_way);
+  void advance(const model::Model& model, const model::State& state, double largest_way);
 
   /// Forces at the present positions, added to those in `nodes`; sums per body in `bodies`, shape [bodies of the
   /// model]. `dt`: the step that has led here; 0 where nothing has moved.
-  ContactReport evaluate(const model::Model& model, const model::NodeMotion* motion, double dt, NodeContact& nodes,
+  ContactReport evaluate(const model::Model& model, const model::State& state, double dt, NodeContact& nodes,
                          BodyContact* bodies);
 
   /// Writes the remembered sides of all pairs to the state of the bodies they belong to.

@@ -29,6 +29,9 @@ bool same_element(const model::ContactSide& a, const model::ContactSide& b) noex
 
 void NodeWatch::look(Index node, std::span<const Index> candidates, std::span<const model::ContactSide> memory,
                      std::vector<model::ContactSide>& remembered, std::vector<ActivePair>& active) {
+  if (!now_.has_surface_at(model_, node)) {
+    return;
+  }
   node_ = node;
   point_ = now_(node);
   if (still_ && !memory.empty()) {
@@ -49,8 +52,10 @@ void NodeWatch::look(Index node, std::span<const Index> candidates, std::span<co
 void NodeWatch::recall(std::span<const model::ContactSide> memory) {
   watched_.clear();
   for (const model::ContactSide& known : memory) {
-    watched_.push_back(measured(known.element));
-    watched_.back().side = known.side;
+    if (now_.has(model_, known.element)) {
+      watched_.push_back(measured(known.element));
+      watched_.back().side = known.side;
+    }
   }
 }
 
@@ -60,13 +65,20 @@ void NodeWatch::gather(std::span<const Index> candidates, std::span<const model:
   deep_.clear();
   through_.clear();
   followed_.clear();
-  elements_.assign(candidates.begin(), candidates.end());
+  elements_.clear();
+  for (const Index element : candidates) {
+    if (now_.has(model_, element)) {
+      elements_.push_back(element);
+    }
+  }
   if (memory.empty()) {
     return;
   }
   for (const model::ContactSide& known : memory) {
-    elements_.push_back(known.element);
-    follow(known);
+    if (now_.has(model_, known.element)) {
+      elements_.push_back(known.element);
+      follow(known);
+    }
   }
   std::sort(deep_.begin(), deep_.end(), by_element);
   deep_.erase(std::unique(deep_.begin(), deep_.end(), same_element), deep_.end());
@@ -113,12 +125,12 @@ NodeWatch::Watched NodeWatch::measured(Index element) {
   w.closest = closest_on(model_, now_, element, point_);
   w.distance = std::sqrt(w.closest.distance2);
   w.normal = normals_(element);
-  w.rim = is_on_rim(model_, element, w.closest.feature);
+  w.rim = is_on_rim(model_, now_, element, w.closest.feature);
   w.view = view_of(model_, normals_, element, w.closest);
   w.acts = true;
   double least = w.closest.distance2;
   Index first = element;
-  for_each_sharing(model_, element, w.closest.feature, [&](Index other) {
+  for_each_sharing(model_, now_, element, w.closest.feature, [&](Index other) {
     const double theirs = closest_on(model_, now_, other, point_).distance2;
     if (theirs < least || (theirs == least && other < first)) {
       least = theirs;

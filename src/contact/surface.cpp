@@ -9,11 +9,16 @@ namespace {
 
 using physics::Feature;
 
-bool has_free_edge_at(const model::Model& model, Index element, Index node) noexcept {
+/// Whether edge `a` of an element has nothing on its other side.
+bool is_free_edge(const model::Model& model, const Positions& x, Index element, std::size_t a) noexcept {
+  const Index other = model.neighbour[at(element)][a];
+  return other == no_index || !x.has(model, other);
+}
+
+bool has_free_edge_at(const model::Model& model, const Positions& x, Index element, Index node) noexcept {
   const auto& t = model.triangle[at(element)];
-  const auto& across = model.neighbour[at(element)];
   for (std::size_t a = 0; a < 3; ++a) {
-    if (t[a] == node && (across[a] == no_index || across[(a + 2) % 3] == no_index)) {
+    if (t[a] == node && (is_free_edge(model, x, element, a) || is_free_edge(model, x, element, (a + 2) % 3))) {
       return true;
     }
   }
@@ -44,22 +49,32 @@ double view_at_outermost_edge(const model::Model& model, Normals& normals, Index
     }
   };
   look_along_edges(element);
-  for_each_sharing(model, element, closest.feature, look_along_edges);
+  for_each_sharing(model, x, element, closest.feature, look_along_edges);
   return steepest;
 }
 
 }  // namespace
 
-bool is_on_rim(const model::Model& model, Index element, Feature feature) noexcept {
+bool Positions::has_surface_at(const model::Model& model, Index node) const noexcept {
+  for (Index c = model.corner_start[at(node)]; c < model.corner_start[at(node) + 1]; ++c) {
+    if (has(model, model.corner[at(c)] / 3)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool is_on_rim(const model::Model& model, const Positions& x, Index element, Feature feature) noexcept {
   if (physics::is_edge(feature)) {
-    return model.neighbour[at(element)][physics::number_of(feature)] == no_index;
+    return is_free_edge(model, x, element, physics::number_of(feature));
   }
   if (!physics::is_corner(feature)) {
     return false;
   }
   const Index node = model.triangle[at(element)][physics::number_of(feature)];
-  bool rim = has_free_edge_at(model, element, node);
-  for_each_sharing(model, element, feature, [&](Index other) { rim = rim || has_free_edge_at(model, other, node); });
+  bool rim = has_free_edge_at(model, x, element, node);
+  for_each_sharing(model, x, element, feature,
+                   [&](Index other) { rim = rim || has_free_edge_at(model, x, other, node); });
   return rim;
 }
 
@@ -73,7 +88,7 @@ View view_of(const model::Model& model, Normals& normals, Index element,
     highest = view > highest ? view : highest;
   };
   look_from(element);
-  for_each_sharing(model, element, closest.feature, look_from);
+  for_each_sharing(model, normals.positions(), element, closest.feature, look_from);
   // Where all views are strictly of one sign, the outermost edge's is, too.
   if (physics::is_corner(closest.feature) && !(lowest > 0.0) && !(highest < 0.0)) {
     steepest = view_at_outermost_edge(model, normals, element, closest);

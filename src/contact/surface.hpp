@@ -9,15 +9,22 @@
 
 namespace fexp::contact {
 
-/// Positions of nodes now, or `back` earlier along their velocities.
+/// Positions of nodes now, or `back` earlier along their velocities, and what is left of the surface between them.
 struct Positions {
   const model::NodeMotion* motion{};  // [nodes]
   double back{};                      ///< [time]
+  const double* layers{};             ///< Those of the state where elements can fail, else null
+  bool still{};                       ///< No step has been taken, see model::is_deleted
 
   [[nodiscard]] Vec3d operator()(Index node) const noexcept {
     const model::NodeMotion& m = motion[node];
     return back == 0.0 ? m.position : m.position - back * m.velocity;
   }
+  [[nodiscard]] bool has(const model::Model& model, Index element) const noexcept {
+    return layers == nullptr || !model::is_deleted(model, layers, element, still ? 1 : 0);
+  }
+  /// Whether an element of the node is left.
+  [[nodiscard]] bool has_surface_at(const model::Model& model, Index node) const noexcept;
 };
 
 [[nodiscard]] inline physics::ClosestPoint closest_on(const model::Model& model, const Positions& x, Index element,
@@ -27,19 +34,21 @@ struct Positions {
 }
 
 /// Calls visit(other) for every other element that shares the feature on which a closest point of `element` lies: none
-/// for the face, the neighbour across an edge, all elements round a corner in ascending order.
+/// for the face, the neighbour across an edge, all elements round a corner in ascending order. Deleted ones are not
+/// there.
 template <class Visit>
-void for_each_sharing(const model::Model& model, Index element, physics::Feature feature, const Visit& visit) {
+void for_each_sharing(const model::Model& model, const Positions& x, Index element, physics::Feature feature,
+                      const Visit& visit) {
   if (physics::is_edge(feature)) {
     const Index other = model.neighbour[at(element)][physics::number_of(feature)];
-    if (other != no_index) {
+    if (other != no_index && x.has(model, other)) {
       visit(other);
     }
   } else if (physics::is_corner(feature)) {
     const Index node = model.triangle[at(element)][physics::number_of(feature)];
     for (Index c = model.corner_start[at(node)]; c < model.corner_start[at(node) + 1]; ++c) {
       const Index other = model.corner[at(c)] / 3;
-      if (other != element) {
+      if (other != element && x.has(model, other)) {
         visit(other);
       }
     }
@@ -47,7 +56,8 @@ void for_each_sharing(const model::Model& model, Index element, physics::Feature
 }
 
 /// Whether the feature lies on the rim of an open surface, where a node may go round from one side to the other.
-[[nodiscard]] bool is_on_rim(const model::Model& model, Index element, physics::Feature feature) noexcept;
+[[nodiscard]] bool is_on_rim(const model::Model& model, const Positions& x, Index element,
+                             physics::Feature feature) noexcept;
 
 /// Unit normals of elements at given positions. Each is asked for again and again by the pairs near it, and takes a
 /// root and a division, so that some are kept.

@@ -140,7 +140,7 @@ std::optional<ValueDifference> compare_field(const ResultsReader& a, const Resul
 std::optional<ValueDifference> compare_frame(const ResultsReader& a, const ResultsReader& b, std::int64_t frame) {
   std::optional<ValueDifference> d = compare_points(a, b, frame);
   for (const ResultField& field : result_fields()) {
-    if (d || (field.constant && frame > 0)) {
+    if (d || (a.is_constant(field) && b.is_constant(field) && frame > 0)) {
       continue;
     }
     d = compare_field(a, b, field, frame);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/field.hpp"
+#include "base/short_list.hpp"
 #include "base/vec3.hpp"
 
 /// What the deck's parser and its reference say about the types of fields.
@@ -87,6 +88,10 @@ template <class T>
   } else {
     return fmt::format("a list of [{}]", type_text(T{}, limits));
   }
+}
+template <class T, std::size_t Capacity>
+[[nodiscard]] std::string type_text(const ShortList<T, Capacity>&, const Limits& limits) {
+  return type_text(std::vector<T>{}, limits);
 }
 template <class T>
 [[nodiscard]] std::string type_text(const std::optional<T>&, const Limits& limits) {

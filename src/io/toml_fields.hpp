@@ -144,6 +144,19 @@ class FieldReader {
       read((*items)[i], item_path(path, i), limits, out.emplace_back());
     }
   }
+  template <class T, std::size_t Capacity>
+  void read(const TomlValue& value, const std::string& path, const Limits& limits, ShortList<T, Capacity>& out) {
+    std::vector<T> items;
+    read(value, path, limits, items);
+    if (items.size() > Capacity) {
+      add(value.line, value.column, fmt::format("{} has {} items", path, items.size()),
+          fmt::format("{} items at most", Capacity), "leave out those that matter least");
+      return;
+    }
+    for (const T& item : items) {
+      out.append(item);
+    }
+  }
 
   [[nodiscard]] Place place(const TomlValue& value) const { return {file_, value.line, value.column}; }
   void add(int line, int column, std::string message, std::string accepted, std::string cure);

@@ -33,6 +33,7 @@ struct ResultsWriter::Parts {
   Index nodes{};
   Index elements{};
   int deflate{};
+  bool plastic{};
   bool usable{true};
   bool abandoned{};
 
@@ -102,9 +103,9 @@ void ResultsWriter::Parts::make_steps() {
   for (const ResultField& field : result_fields()) {
     const bool node = field.place == FieldPlace::node;
     const std::string offsets = group + (node ? "PointDataOffsets/" : "CellDataOffsets/") + std::string(field.name);
-    const std::string same = field.constant ? group + "PartOffsets"
-                             : node         ? group + "PointOffsets"
-                                            : std::string("/fexp/element_offsets");
+    const std::string same = field.constant(plastic) ? group + "PartOffsets"
+                             : node                  ? group + "PointOffsets"
+                                                     : std::string("/fexp/element_offsets");
     file.make_link(same, offsets);
   }
 }
@@ -112,6 +113,7 @@ void ResultsWriter::Parts::make_steps() {
 void ResultsWriter::Parts::make_own_group(const model::Model& model, const ResultsOptions& options) {
   file.make_group("/fexp");
   file.set_attribute("/fexp", "format", std::vector<std::int64_t>{1});
+  file.set_attribute("/fexp", "plastic", std::vector<std::int64_t>{plastic ? 1 : 0});
   file.set_attribute("/fexp", "program", "fexp " FEXP_VERSION);
   file.set_attribute("/fexp", "title", options.title);
   (void)file.make_growing("/fexp/step", H5T_NATIVE_INT64, 0, {step_rows});
@@ -181,7 +183,7 @@ void ResultsWriter::Parts::grow_to(std::int64_t count) {
   const auto element_rows = static_cast<hsize_t>(elements);
   file.grow(points, frame_count * node_rows);
   for (const Growing& g : growing) {
-    const hsize_t blocks = g.field->constant ? std::min<hsize_t>(frame_count, 1) : frame_count;
+    const hsize_t blocks = g.field->constant(plastic) ? std::min<hsize_t>(frame_count, 1) : frame_count;
     file.grow(g.dataset, blocks * (g.field->place == FieldPlace::node ? node_rows : element_rows));
   }
   for (const Handle* rows : {&values, &steps, &point_offsets, &element_offsets}) {
@@ -199,7 +201,7 @@ void ResultsWriter::Parts::write_frame(const model::Frame& frame) {
   grow_to(frames + 1);
   file.write_rows(points, H5T_NATIVE_DOUBLE, index * node_rows, node_rows, frame.position.data());
   for (const Growing& g : growing) {
-    if (g.field->constant && frames > 0) {
+    if (g.field->constant(plastic) && frames > 0) {
       continue;
     }
     const hsize_t rows = g.field->place == FieldPlace::node ? node_rows : element_rows;
@@ -226,7 +228,8 @@ ResultsWriter::ResultsWriter(const std::filesystem::path& path, const model::Mod
   parts_ = std::make_unique<Parts>(Parts{.file = hdf5::File::create(unfinished, capacity),
                                          .nodes = model.node_count(),
                                          .elements = model.element_count(),
-                                         .deflate = options.deflate});
+                                         .deflate = options.deflate,
+                                         .plastic = model.plastic});
   parts_->make_structure(model, options);
   parts_->open_datasets();
   parts_->file.flush();
@@ -252,7 +255,8 @@ ResultsWriter ResultsWriter::resume(const std::filesystem::path& path, const mod
   auto parts = std::make_unique<Parts>(Parts{.file = hdf5::File::open_to_append(path),
                                              .frames = frames,
                                              .nodes = model.node_count(),
-                                             .elements = model.element_count()});
+                                             .elements = model.element_count(),
+                                             .plastic = model.plastic});
   const std::int64_t present = parts->file.integer_attribute("/VTKHDF/Steps", "NSteps");
   std::int64_t node_count = 0;
   std::int64_t element_count = 0;

@@ -16,13 +16,14 @@ const void* data_of(const Frame& frame) {
 
 template <auto Member>
 constexpr ResultField at_nodes(std::string_view name, std::string_view unit, std::string_view meaning) {
-  return {name, FieldPlace::node, 3, FieldType::single_precision, false, unit, meaning, data_of<Member>};
+  return {name, FieldPlace::node, 3, FieldType::single_precision, Varies::always, unit, meaning, data_of<Member>};
 }
 
 template <auto Member>
 constexpr ResultField at_elements(std::string_view name, int components, std::string_view unit,
                                   std::string_view meaning) {
-  return {name, FieldPlace::element, components, FieldType::single_precision, false, unit, meaning, data_of<Member>};
+  return {name,    FieldPlace::element, components, FieldType::single_precision, Varies::always, unit,
+          meaning, data_of<Member>};
 }
 
 constexpr std::array fields{
@@ -38,11 +39,15 @@ constexpr std::array fields{
     at_elements<&Frame::von_mises_bottom>("von_mises_bottom", 1, "force/length^2",
                                           "Von Mises stress on the side away from the normal"),
     at_elements<&Frame::energy_density>("energy_density", 1, "force/length^2", "Internal energy over reference volume"),
-    ResultField{"thickness", FieldPlace::element, 1, FieldType::single_precision, true, "length", "Shell thickness",
-                data_of<&Frame::thickness>},
-    ResultField{"body", FieldPlace::element, 1, FieldType::integer, true, "-", "Index of the body",
+    ResultField{"thickness", FieldPlace::element, 1, FieldType::single_precision, Varies::where_plastic, "length",
+                "Shell thickness", data_of<&Frame::thickness>},
+    ResultField{"plastic_strain", FieldPlace::element, 1, FieldType::single_precision, Varies::where_plastic, "-",
+                "Effective plastic strain, largest through the thickness", data_of<&Frame::plastic_strain>},
+    ResultField{"deleted", FieldPlace::element, 1, FieldType::integer, Varies::where_plastic, "-",
+                "1 when the element has failed, else 0", data_of<&Frame::deleted>},
+    ResultField{"body", FieldPlace::element, 1, FieldType::integer, Varies::never, "-", "Index of the body",
                 data_of<&Frame::body>},
-    ResultField{"island", FieldPlace::element, 1, FieldType::integer, false, "-",
+    ResultField{"island", FieldPlace::element, 1, FieldType::integer, Varies::always, "-",
                 "Index of the island, -1 for a barrier", data_of<&Frame::island>},
 };
 

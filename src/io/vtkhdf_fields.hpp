@@ -12,6 +12,7 @@
 namespace fexp::io {
 
 enum class FieldPlace { node, element };
+enum class Varies { always, where_plastic, never };
 enum class FieldType { single_precision, double_precision, integer };
 
 struct ResultField {
@@ -19,10 +20,15 @@ struct ResultField {
   FieldPlace place;
   int components;
   FieldType type;
-  bool constant;          ///< The same in every frame: stored once.
+  Varies varies;
   std::string_view unit;  ///< Dimension
   std::string_view meaning;
   const void* (*data)(const model::Frame&);
+
+  /// The same in every frame of a model with plastic materials or without: stored once.
+  [[nodiscard]] constexpr bool constant(bool plastic) const noexcept {
+    return varies == Varies::never || (varies == Varies::where_plastic && !plastic);
+  }
 };
 
 /// Node and element fields in the order in which they are written; positions are not among them (VTKHDF: Points).

@@ -48,7 +48,7 @@ std::vector<FieldRange> ranges(const ResultsReader& reader) {
   for (const ResultField& field : result_fields()) {
     result.push_back(empty_range(std::string(field.name), std::string(field.unit), std::string(field.meaning),
                                  field.place == FieldPlace::node, field.components));
-    const std::int64_t frames = field.constant ? 1 : reader.frames();
+    const std::int64_t frames = reader.is_constant(field) ? 1 : reader.frames();
     for (std::int64_t frame = 0; frame < frames; ++frame) {
       include(reader.numbers(field, frame), result.back());
     }

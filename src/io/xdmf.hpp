@@ -36,6 +36,7 @@ class XdmfWriter {
   std::string results_;
   std::int64_t nodes_{};
   std::int64_t elements_{};
+  bool plastic_{};
   std::string frames_text_;
   std::int64_t frames_{};
   std::int64_t written_{};

@@ -41,11 +41,29 @@ void build_sections(const Description& description, Model& model) {
             [&](const auto& law) {
               data.moduli = law.moduli();
               data.density = law.density;
+              if constexpr (requires { law.plasticity(); }) {
+                const auto rule = section.quadrature == quadrature_names[0] ? physics::Quadrature::gauss
+                                                                            : physics::Quadrature::lobatto;
+                data.layered = {physics::through_thickness(rule, section.points), data.moduli,
+                                physics::J2Elasticity::of(data.moduli), law.plasticity()};
+              }
             },
             material.law);
       }
     }
+    model.plastic = model.plastic || data.layered.points.count > 0;
+    model.can_fail = model.can_fail || data.layered.plasticity.can_fail();
     model.sections.push_back(std::move(data));
+  }
+}
+
+/// Gives every block of a layered section its rows of State::layers.
+void place_layers(Model& model) {
+  Index row = 0;
+  for (ElementBlock& block : model.blocks) {
+    const Index rows = model.sections[at(block.section)].layer_rows();
+    block.layer_row = rows > 0 ? row : no_index;
+    row += rows;
   }
 }
 
@@ -198,6 +216,7 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   if (!errors.empty()) {
     return model;
   }
+  place_layers(model);
   CornerRows rows = corner_rows(model.node_count(), model.triangle);
   model.corner_start = std::move(rows.start);
   model.corner = std::move(rows.corner);

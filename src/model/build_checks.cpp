@@ -56,6 +56,66 @@ void check_curve(const Curve& curve, ErrorList& errors) {
   }
 }
 
+/// A law of linear hardening: it must not be stiffer beyond the yield stress than before.
+void check_hardening(const Material& material, const physics::J2Linear& law, ErrorList& errors) {
+  if (law.tangent_modulus >= law.young) {
+    errors.add(material.place,
+               fmt::format("material \"{}\": tangent_modulus is {}, young is {}", material.name, law.tangent_modulus,
+                           law.young),
+               "a tangent_modulus less than young", "correct one of them");
+  }
+}
+
+void check_hardening(const Material& material, const physics::J2Table& law, ErrorList& errors) {
+  std::string wrong = law.table.count == 0 ? "has no points" : "";
+  const std::array<double, 2>* last = nullptr;
+  for (const std::array<double, 2>& point : law.table) {
+    const auto& [strain, stress] = point;
+    if (!wrong.empty()) {
+      break;
+    }
+    if (!(stress > 0.0)) {
+      wrong = fmt::format("has a yield stress of {} at a strain of {}", stress, strain);
+    } else if (last == nullptr && strain != 0.0) {
+      wrong = fmt::format("begins at a strain of {}", strain);
+    } else if (last != nullptr && !(strain > (*last)[0])) {
+      wrong = fmt::format("has a strain of {} after one of {}", strain, (*last)[0]);
+    } else if (last != nullptr && !(stress >= (*last)[1])) {
+      wrong = fmt::format("has a yield stress of {} after one of {}", stress, (*last)[1]);
+    }
+    last = &point;
+  }
+  if (!wrong.empty()) {
+    errors.add(material.place, fmt::format("the table of material \"{}\" {}", material.name, wrong),
+               "strains ascending from 0, stresses > 0 that do not fall",
+               "correct the table; plastic strain is total strain less stress/young");
+  }
+}
+
+void check_materials(const Description& description, ErrorList& errors) {
+  for (const Material& material : description.materials) {
+    std::visit(
+        [&](const auto& law) {
+          if constexpr (requires { check_hardening(material, law, errors); }) {
+            check_hardening(material, law, errors);
+          }
+        },
+        material.law);
+  }
+}
+
+void check_quadrature(const Section& section, ErrorList& errors) {
+  if (!Section::points_range.contains(section.points)) {
+    errors.add(section.place, fmt::format("section \"{}\" has {} points", section.name, section.points),
+               std::string(Section::points_range.text), "correct the number");
+  } else if (section.quadrature == quadrature_names[1] && section.points < physics::fewest_lobatto_points) {
+    errors.add(section.place,
+               fmt::format("section \"{}\" has {} points of Lobatto's rule", section.name, section.points),
+               fmt::format("{} to {}", physics::fewest_lobatto_points, physics::most_points),
+               "take more points, or quadrature = \"gauss\"");
+  }
+}
+
 void check_dof(const std::string& dof, const Place& place, ErrorList& errors) {
   if (dof_index(dof) == no_index) {
     errors.add(place, fmt::format("\"{}\" is no degree of freedom", dof), "x, y, z, rx, ry, rz", "use one of these");
@@ -253,7 +313,9 @@ void check_description(const Description& description, ErrorList& errors) {
   for (const Curve& curve : description.curves) {
     check_curve(curve, errors);
   }
+  check_materials(description, errors);
   for (const Section& section : description.sections) {
+    check_quadrature(section, errors);
     if (!contains(materials, section.material)) {
       errors.add(
           section.place,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/capture.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "parallel/parallel.hpp"
@@ -33,6 +34,27 @@ void capture_nodes(const Model& model, const State& state, std::span<const Vec3d
   });
 }
 
+/// What points through the thickness know better than the resultants.
+void capture_layers(const Model& model, const State& state, Index element, Frame& frame) {
+  const std::size_t e = at(element);
+  const auto row = [&](Index r) { return layer_value(model, state, element, r); };
+  const auto stress_at = [&](Index point) {
+    const Index first = physics::layer_points + point * physics::point_rows;
+    const double mean = 0.5 * row(first + physics::point_sum), half = 0.5 * row(first + physics::point_difference);
+    return static_cast<float>(von_mises(mean + half, mean - half, row(first + physics::point_shear)));
+  };
+  const Index points = model.section_of(element).layered.points.count;
+  double strain = 0.0;
+  for (Index p = 0; p < points; ++p) {
+    strain = std::max(strain, row(physics::layer_points + p * physics::point_rows + physics::point_strain));
+  }
+  frame.von_mises_top[e] = stress_at(points - 1);
+  frame.von_mises_bottom[e] = stress_at(0);
+  frame.thickness[e] = static_cast<float>(row(physics::layer_thickness));
+  frame.plastic_strain[e] = static_cast<float>(strain);
+  frame.deleted[e] = is_deleted(model, state.layers.data(), element) ? 1 : 0;
+}
+
 void capture_element(const Model& model, const State& state, Index element, Frame& frame) {
   const std::size_t e = at(element);
   const auto row = [&](ElementRow r) { return element_value(model, state, element, r); };
@@ -54,6 +76,11 @@ void capture_element(const Model& model, const State& state, Index element, Fram
   frame.von_mises_bottom[e] = static_cast<float>(von_mises(bottom[0], bottom[1], bottom[2]));
   frame.energy_density[e] = static_cast<float>(row(row_energy) / (model.reference_area[e] * t));
   frame.thickness[e] = static_cast<float>(t);
+  frame.plastic_strain[e] = 0.0F;
+  frame.deleted[e] = 0;
+  if (model.blocks[at(model.element_block[e])].layer_row != no_index) {
+    capture_layers(model, state, element, frame);
+  }
 }
 
 void capture_elements(const Model& model, const State& state, std::span<const Index> island_of_body, Frame& frame) {
@@ -65,6 +92,8 @@ void capture_elements(const Model& model, const State& state, std::span<const In
   frame.von_mises_bottom.resize(count);
   frame.energy_density.resize(count);
   frame.thickness.resize(count);
+  frame.plastic_strain.resize(count);
+  frame.deleted.resize(count);
   frame.body.resize(count);
   frame.island.resize(count);
   parallel::for_each(model.element_count(), grain, [&](Index element) {

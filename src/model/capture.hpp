@@ -31,10 +31,13 @@ struct Frame {
   std::vector<std::array<float, 3>> membrane_force;  ///< nxx nyy nxy [force/length]
   std::vector<std::array<float, 3>> bending_moment;  ///< mxx myy mxy [force]
   std::vector<std::array<float, 2>> shear_force;     ///< qxz qyz [force/length]
-  std::vector<float> von_mises_top;                  ///< On the side the normal points to [force/length^2]
-  std::vector<float> von_mises_bottom;               ///< On the other side [force/length^2]
-  std::vector<float> energy_density;                 ///< Internal energy over reference volume [force/length^2]
-  std::vector<float> thickness;                      ///< [length]
+  /// On the side the normal points to; at the outermost point where the section has points [force/length^2]
+  std::vector<float> von_mises_top;
+  std::vector<float> von_mises_bottom;  ///< On the other side [force/length^2]
+  std::vector<float> energy_density;    ///< Internal energy over reference volume [force/length^2]
+  std::vector<float> thickness;         ///< [length]
+  std::vector<float> plastic_strain;    ///< Effective, largest of the element's points [-]
+  std::vector<Index> deleted;           ///< 1 when the element has failed, else 0
   std::vector<Index> body;
   std::vector<Index> island;  ///< no_index for a barrier
 };

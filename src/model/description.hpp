@@ -13,6 +13,7 @@
 #include "base/vec3.hpp"
 #include "model/mesh_generators.hpp"
 #include "physics/registry.hpp"
+#include "physics/through_thickness.hpp"
 
 /// What a user describes, before it is checked against meshes and frozen into a Model: plain values, each with its
 /// documented fields and the place in the deck it came from.
@@ -20,6 +21,9 @@ namespace fexp::model {
 
 /// Names of the degrees of freedom, in the order of FixedNode::mask and PrescribedNode::dof.
 inline constexpr std::array<std::string_view, 6> dof_names{"x", "y", "z", "rx", "ry", "rz"};
+
+/// Names of rules of integration through the thickness, in the order of physics::Quadrature.
+inline constexpr std::array<std::string_view, 2> quadrature_names{"gauss", "lobatto"};
 
 /// Piecewise linear function of time, constant beyond its ends.
 struct Curve {
@@ -52,11 +56,18 @@ struct Section {
   std::string material;
   double thickness{};  ///< [length]
   Place place;
+  int points{5};  ///< Through the thickness
+  std::string quadrature{"gauss"};
 
+  static constexpr Range points_range{1.0, physics::most_points, true, true, "1 to 9"};
   static constexpr auto fields = std::tuple{
       Field{"name", "-", "Name by which bodies refer to the section.", &Section::name, any_number, Presence::required},
       Field{"material", "-", "Name of a material.", &Section::material, any_number, Presence::required},
       Field{"thickness", "length", "Shell thickness.", &Section::thickness, positive, Presence::required},
+      Field{"points", "-", "Integration points through the thickness of plastic laws; elastic ones need none.",
+            &Section::points, points_range},
+      Field{"quadrature", "-", "Where these points lie; Lobatto's rule has some on both surfaces and takes 3 or more.",
+            &Section::quadrature, Choices(quadrature_names)},
   };
 };
 

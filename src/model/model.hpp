@@ -11,6 +11,7 @@
 #include "base/index.hpp"
 #include "base/vec3.hpp"
 #include "model/description.hpp"
+#include "physics/layered_section.hpp"
 
 namespace fexp::model {
 
@@ -24,6 +25,7 @@ struct ElementBlock {
   Index count{};  ///< Used lanes; the rest repeats the last element and contributes nothing.
   Index section{};
   Index body{};
+  Index layer_row{no_index};  ///< First row in State::layers; no_index where the section is elastic.
 };
 
 /// Material and thickness as the element kernel reads them.
@@ -33,6 +35,10 @@ struct SectionData {
   physics::PlaneStressModuli moduli{};
   double density{};    ///< [mass/length^3]
   double thickness{};  ///< [length]
+  physics::LayeredSection layered{};
+
+  /// Rows of the history of an element's points.
+  [[nodiscard]] Index layer_rows() const noexcept { return physics::layer_rows(layered.points.count); }
 };
 
 /// A connected set of elements: the unit of the interaction graph, of energy sums, of hashes and of migration.
@@ -163,6 +169,8 @@ struct Model {
   std::vector<RigidPlane> planes;                ///< Normals are unit vectors.
   std::vector<NamedNodes> node_sets;
 
+  bool plastic{};   ///< Some section has points through its thickness.
+  bool can_fail{};  ///< Elements may be deleted.
   ContactSettings contact;
   /// Pairs of bodies (first <= second, sorted) that do not touch.
   std::vector<std::pair<Index, Index>> excluded_pairs;

@@ -50,16 +50,40 @@ class Reader {
 static_assert(sizeof(NodeMotion) == 9 * sizeof(double) && sizeof(NodeAcceleration) == 6 * sizeof(double));
 static_assert(sizeof(BodyLedger) == 10 * sizeof(double));
 
+std::size_t row_offset(Index block, Index row) { return (at(block) * element_rows + at(row)) * at(block_lanes); }
+
 constexpr std::size_t side_bytes = 2 * sizeof(Index) + sizeof(std::int8_t);
 
-/// Bytes in front of the number of sides.
-std::size_t bytes_before_sides(const Body& body) {
-  return at(body.nodes.size()) * (sizeof(NodeMotion) + sizeof(NodeAcceleration)) +
-         at(body.elements.size()) * element_rows * sizeof(double);
+Index layer_rows(const Model& model, const ElementBlock& block) {
+  return block.layer_row == no_index ? 0 : model.sections[at(block.section)].layer_rows();
 }
 
-std::size_t bytes_of_body(const Body& body, std::size_t sides) {
-  return bytes_before_sides(body) + sizeof(std::int64_t) + sides * side_bytes + sizeof(BodyLedger);
+/// Calls `visit(rows, count)` for the used lanes of every row of a body's history, block by block.
+template <class SomeState, class Visit>
+void for_each_row(const Model& model, const Body& body, SomeState& state, const Visit& visit) {
+  for (Index b = body.blocks.begin; b < body.blocks.end; ++b) {
+    const ElementBlock& block = model.blocks[at(b)];
+    for (Index row = 0; row < element_rows; ++row) {
+      visit(state.history.data() + row_offset(b, row), at(block.count));
+    }
+    for (Index row = 0; row < layer_rows(model, block); ++row) {
+      visit(state.layers.data() + at(block.layer_row + row) * at(block_lanes), at(block.count));
+    }
+  }
+}
+
+/// Bytes in front of the number of sides.
+std::size_t bytes_before_sides(const Model& model, const Body& body) {
+  std::size_t numbers = 0;
+  for (Index b = body.blocks.begin; b < body.blocks.end; ++b) {
+    const ElementBlock& block = model.blocks[at(b)];
+    numbers += at(block.count) * at(element_rows + layer_rows(model, block));
+  }
+  return at(body.nodes.size()) * (sizeof(NodeMotion) + sizeof(NodeAcceleration)) + numbers * sizeof(double);
+}
+
+std::size_t bytes_of_body(const Model& model, const Body& body, std::size_t sides) {
+  return bytes_before_sides(model, body) + sizeof(std::int64_t) + sides * side_bytes + sizeof(BodyLedger);
 }
 
 /// True when the side is one that the body can have: of its own node and any element, or of a barrier's node and its
@@ -81,8 +105,6 @@ bool are_sides_of(const Model& model, const Body& body, const std::vector<Contac
   }
   return true;
 }
-
-std::size_t row_offset(Index block, Index row) { return (at(block) * element_rows + at(row)) * at(block_lanes); }
 
 }  // namespace
 
@@ -114,6 +136,17 @@ State initial_state(const Model& model) {
     rate -= dot(rate, oblique.direction) * oblique.direction;
   }
   state.history.assign(model.blocks.size() * element_rows * at(block_lanes), 0.0);
+  std::size_t rows = 0;
+  for (const ElementBlock& block : model.blocks) {
+    rows += at(layer_rows(model, block));
+  }
+  state.layers.assign(rows * at(block_lanes), 0.0);
+  for (const ElementBlock& block : model.blocks) {
+    if (block.layer_row != no_index) {
+      std::fill_n(state.layers.data() + at(block.layer_row + physics::layer_thickness) * at(block_lanes), block_lanes,
+                  model.sections[at(block.section)].thickness);
+    }
+  }
   state.sides.resize(model.bodies.size());
   state.ledger.resize(model.bodies.size());
   return state;
@@ -128,26 +161,29 @@ void copy_body(const Model& model, const State& from, Index body, State& to) {
   copy(from.motion, to.motion, at(owner.nodes.begin), at(owner.nodes.end));
   copy(from.acceleration, to.acceleration, at(owner.nodes.begin), at(owner.nodes.end));
   copy(from.history, to.history, row_offset(owner.blocks.begin, 0), row_offset(owner.blocks.end, 0));
+  for (Index b = owner.blocks.begin; b < owner.blocks.end; ++b) {
+    const ElementBlock& block = model.blocks[at(b)];
+    const std::size_t first = at(block.layer_row) * at(block_lanes);
+    if (block.layer_row != no_index) {
+      copy(from.layers, to.layers, first, first + at(layer_rows(model, block)) * at(block_lanes));
+    }
+  }
   to.sides[at(body)] = from.sides[at(body)];
   to.ledger[at(body)] = from.ledger[at(body)];
 }
 
-// Order: motion of the nodes (x, v, omega), their accelerations (a, alpha), element rows block by block (used lanes
-// only), the number of sides (64 bits) and the sides (node, element, side: 32, 32 and 8 bits), the ledger. All numbers
-// are little-endian and stand side by side.
+// Order: motion of the nodes (x, v, omega), their accelerations (a, alpha), rows of the elements and of their layers
+// block by block (used lanes only), the number of sides (64 bits) and the sides (node, element, side: 32, 32 and 8
+// bits), the ledger. All numbers are little-endian and stand side by side.
 void append_body_bytes(const Model& model, const State& state, Index body, std::vector<std::byte>& bytes) {
   const Body& owner = model.bodies[at(body)];
   const std::vector<ContactSide>& sides = state.sides[at(body)];
   const std::size_t before = bytes.size();
-  bytes.resize(before + bytes_of_body(owner, sides.size()));
+  bytes.resize(before + bytes_of_body(model, owner, sides.size()));
   Writer writer(bytes.data() + before);
   writer.write(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));
   writer.write(state.acceleration.data() + owner.nodes.begin, at(owner.nodes.size()));
-  for (Index b = owner.blocks.begin; b < owner.blocks.end; ++b) {
-    for (Index row = 0; row < element_rows; ++row) {
-      writer.write(state.history.data() + row_offset(b, row), at(model.blocks[at(b)].count));
-    }
-  }
+  for_each_row(model, owner, state, [&](const double* row, std::size_t count) { writer.write(row, count); });
   const auto count = static_cast<std::int64_t>(sides.size());
   writer.write(&count, 1);
   for (const ContactSide& side : sides) {
@@ -160,15 +196,16 @@ void append_body_bytes(const Model& model, const State& state, Index body, std::
 
 bool read_body_bytes(const Model& model, std::span<const std::byte> bytes, Index body, State& state) {
   const Body& owner = model.bodies[at(body)];
-  const std::size_t front = bytes_before_sides(owner);
-  if (bytes.size() < bytes_of_body(owner, 0)) {
+  const std::size_t front = bytes_before_sides(model, owner);
+  const std::size_t least = bytes_of_body(model, owner, 0);
+  if (bytes.size() < least) {
     return false;
   }
   std::int64_t count = 0;
   Reader(bytes.data() + front).read(&count, 1);
-  const std::size_t room = (bytes.size() - bytes_of_body(owner, 0)) / side_bytes;
+  const std::size_t room = (bytes.size() - least) / side_bytes;
   if (count < 0 || static_cast<std::uint64_t>(count) > room ||
-      bytes.size() != bytes_of_body(owner, static_cast<std::size_t>(count))) {
+      bytes.size() != least + static_cast<std::size_t>(count) * side_bytes) {
     return false;
   }
   Reader rear(bytes.data() + front + sizeof(count));
@@ -186,11 +223,7 @@ bool read_body_bytes(const Model& model, std::span<const std::byte> bytes, Index
   Reader reader(bytes.data());
   reader.read(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));
   reader.read(state.acceleration.data() + owner.nodes.begin, at(owner.nodes.size()));
-  for (Index b = owner.blocks.begin; b < owner.blocks.end; ++b) {
-    for (Index row = 0; row < element_rows; ++row) {
-      reader.read(state.history.data() + row_offset(b, row), at(model.blocks[at(b)].count));
-    }
-  }
+  for_each_row(model, owner, state, [&](double* row, std::size_t lanes) { reader.read(row, lanes); });
   return true;
 }
 

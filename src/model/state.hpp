@@ -69,6 +69,7 @@ struct State {
   AlignedVector<NodeMotion> motion;              // [nodes]
   AlignedVector<NodeAcceleration> acceleration;  // [nodes]
   AlignedVector<double> history;                 // [blocks][element_rows][block_lanes]
+  AlignedVector<double> layers;                  // [layered blocks][physics::layer_rows][block_lanes]
   std::vector<std::vector<ContactSide>> sides;   // [bodies]: sorted by (node, element); the body's nodes, and
                                                  // barriers' nodes with its elements
   std::vector<BodyLedger> ledger;                // [bodies]
@@ -93,6 +94,21 @@ void append_body_bytes(const Model& model, const State& state, Index body, std::
 
 /// Hash over step, time and all body hashes in ascending body order.
 [[nodiscard]] std::uint64_t state_hash(const Model& model, const State& state);
+
+/// The value of one row of a layered element.
+[[nodiscard]] inline double layer_value(const Model& model, const State& state, Index element, Index row) {
+  const ElementBlock& block = model.blocks[at(model.element_block[at(element)])];
+  return state.layers[(at(block.layer_row) + at(row)) * at(block_lanes) + at(element - block.first)];
+}
+
+/// Whether the element has failed and takes part no more; `layers` is that of the state. Contact and loads are
+/// evaluated before the elements in a step: for them, when the present state is looked at again without a step,
+/// elements that failed at its end are still there, `steps` ago being 1. Otherwise it is 0.
+[[nodiscard]] inline bool is_deleted(const Model& model, const double* layers, Index element, int steps = 0) {
+  const ElementBlock& block = model.blocks[at(model.element_block[at(element)])];
+  return block.layer_row != no_index &&
+         layers[(at(block.layer_row) + physics::layer_deleted) * at(block_lanes) + at(element - block.first)] > steps;
+}
 
 /// The value of one element row.
 [[nodiscard]] inline double element_value(const Model& model, const State& state, Index element, ElementRow row) {

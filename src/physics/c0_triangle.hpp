@@ -241,15 +241,33 @@ struct MaterialTurn {
   }
 };
 
-/// Linear elastic update S += C de of resultants that turn with the material, and of the energy by the mean of old and
-/// new resultants over the area.
+/// Transverse shear and drilling rotations of an elastic update, and the energy of the whole: that of the mean of old
+/// and new resultants over the area, to which `density` brings what membrane and bending have.
+template <class T>
+FEXP_INLINE void update_shear_and_drilling(const ShellStiffness& s, const T& area, const ShellIncrement<T>& e,
+                                           const MaterialTurn<T>& turn, T density, ShellResultants<T>& r) noexcept {
+  const T cs(s.shear);
+  const T kd = drilling_stiffness(s, area);
+  const T dqx = cs * e.gxz, dqy = cs * e.gyz;
+  T mean_x = r.qxz + T(0.5) * dqx, mean_y = r.qyz + T(0.5) * dqy;
+  const auto [turned_x, turned_y] = turn.turn_vector(mean_x, mean_y);
+  density = density + (mean_x * e.gxz + mean_y * e.gyz);
+  r.qxz = r.qxz + (dqx + turned_x);
+  r.qyz = r.qyz + (dqy + turned_y);
+
+  T drill(0.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    drill = drill + (r.drill[i] + T(0.5) * e.drill[i]) * e.drill[i];
+    r.drill[i] = r.drill[i] + e.drill[i];
+  }
+  r.energy = r.energy + (area * density + kd * drill);
+}
+
+/// Linear elastic update S += C de of resultants that turn with the material, and of the energy.
 template <class T>
 FEXP_INLINE void update_elastic(const ShellStiffness& s, const T& area, const ShellIncrement<T>& e,
                                 ShellResultants<T>& r) noexcept {
-  const T cs(s.shear);
-  const T kd = drilling_stiffness(s, area);
   const MaterialTurn<T> turn(e.gxy);
-
   T density(0.0);
   const auto add_tensor = [&](const PlaneStressModuli& m, const std::array<T, 3>& strain, T& xx, T& yy, T& xy) {
     const T direct(m.direct), cross(m.cross), shear(m.shear);
@@ -265,20 +283,7 @@ FEXP_INLINE void update_elastic(const ShellStiffness& s, const T& area, const Sh
   };
   add_tensor(s.membrane, {e.exx, e.eyy, e.gxy}, r.nxx, r.nyy, r.nxy);
   add_tensor(s.bending, {e.kxx, e.kyy, e.kxy}, r.mxx, r.myy, r.mxy);
-
-  const T dqx = cs * e.gxz, dqy = cs * e.gyz;
-  T mean_x = r.qxz + T(0.5) * dqx, mean_y = r.qyz + T(0.5) * dqy;
-  const auto [turned_x, turned_y] = turn.turn_vector(mean_x, mean_y);
-  density = density + (mean_x * e.gxz + mean_y * e.gyz);
-  r.qxz = r.qxz + (dqx + turned_x);
-  r.qyz = r.qyz + (dqy + turned_y);
-
-  T drill(0.0);
-  for (std::size_t i = 0; i < 3; ++i) {
-    drill = drill + (r.drill[i] + T(0.5) * e.drill[i]) * e.drill[i];
-    r.drill[i] = r.drill[i] + e.drill[i];
-  }
-  r.energy = r.energy + (area * density + kd * drill);
+  update_shear_and_drilling(s, area, e, turn, density, r);
 }
 
 /// Internal corner forces and moments A B^T S in global directions, in the frame of the geometry at the step's end.

@@ -38,6 +38,18 @@ double internal_energy(const model::Model& model, const model::State& state, Ind
   return sum;
 }
 
+/// Plastic work and the number of deleted elements.
+Diagnostics layer_sums(const model::Model& model, const model::State& state, Index begin, Index end) {
+  Diagnostics sum;
+  for (Index e = begin; e < end; ++e) {
+    if (model.blocks[at(model.element_block[at(e)])].layer_row != no_index) {
+      sum.energies.dissipated += model::layer_value(model, state, e, physics::layer_dissipation);
+      sum.deleted += model::is_deleted(model, state.layers.data(), e) ? 1 : 0;
+    }
+  }
+  return sum;
+}
+
 Diagnostics plus(Diagnostics a, const Diagnostics& b) noexcept { return a += b; }
 
 }  // namespace
@@ -49,6 +61,7 @@ Energies& Energies::operator+=(const Energies& other) noexcept {
   barrier += other.barrier;
   external += other.external;
   damping += other.damping;
+  dissipated += other.dissipated;
   return *this;
 }
 
@@ -65,6 +78,7 @@ Momenta& Momenta::operator+=(const Momenta& other) noexcept {
 Diagnostics& Diagnostics::operator+=(const Diagnostics& other) noexcept {
   energies += other.energies;
   momenta += other.momenta;
+  deleted += other.deleted;
   return *this;
 }
 
@@ -77,6 +91,11 @@ Diagnostics body_diagnostics(const model::Model& model, const model::State& stat
   sum.energies.internal = parallel::ordered_fold(
       owner.elements, piece, 0.0, [&](Index begin, Index end) { return internal_energy(model, state, begin, end); },
       std::plus<>());
+  if (model.plastic) {
+    sum += parallel::ordered_fold(
+        owner.elements, piece, Diagnostics{},
+        [&](Index begin, Index end) { return layer_sums(model, state, begin, end); }, plus);
+  }
   sum.energies.contact = ledger.contact_energy;
   sum.energies.barrier = ledger.barrier_energy;
   sum.energies.external = ledger.external_work;
@@ -98,7 +117,8 @@ CriticalStep body_critical_step(const model::Model& model, const model::State& s
   const StepKernel kernel = select_element_kernel(KernelChoice::automatic).steps;
   const StepKernelArguments arguments{
       state.motion.data(),   model.triangle.data(), model.blocks.data(),
-      model.sections.data(), model.run.drilling,    model.step_factor.empty() ? nullptr : model.step_factor.data()};
+      model.sections.data(), model.run.drilling,    model.step_factor.empty() ? nullptr : model.step_factor.data(),
+      state.layers.data()};
   return parallel::ordered_fold(
       model.bodies[at(body)].blocks, piece / model::block_lanes, CriticalStep{},
       [&](Index begin, Index end) { return kernel(arguments, begin, end); }, smaller);

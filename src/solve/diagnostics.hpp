@@ -11,11 +11,12 @@ namespace fexp::solve {
 /// computed independently of each other, so that their balance checks the solver.
 struct Energies {
   double kinetic{};
-  double internal{};  ///< Sum of the elements' stress work
-  double contact{};   ///< Potential of contact pairs
-  double barrier{};   ///< Potential of rigid planes
-  double external{};  ///< Work put in by loads, gravity and prescribed motion
-  double damping{};   ///< Work taken out by damping
+  double internal{};    ///< Sum of the elements' stress work
+  double contact{};     ///< Potential of contact pairs
+  double barrier{};     ///< Potential of rigid planes
+  double external{};    ///< Work put in by loads, gravity and prescribed motion
+  double damping{};     ///< Work taken out by damping
+  double dissipated{};  ///< Of the internal energy what plastic flow has taken
 
   /// What the body has now, less what was put in: constant in exact arithmetic and time.
   [[nodiscard]] double balance() const noexcept { return kinetic + internal + contact + barrier + damping - external; }
@@ -36,6 +37,7 @@ struct Momenta {
 struct Diagnostics {
   Energies energies;
   Momenta momenta;
+  std::int64_t deleted{};  ///< Elements that have failed
 
   Diagnostics& operator+=(const Diagnostics& other) noexcept;
 };

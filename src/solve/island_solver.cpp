@@ -281,7 +281,7 @@ bool IslandSolver::check_motion(const Step& step, const EpochPlan& plan, IslandR
       return false;
     }
   }
-  contact_.advance(step.model, step.state.motion.data(), largest);
+  contact_.advance(step.model, step.state, largest);
   return true;
 }
 
@@ -298,8 +298,8 @@ void IslandSolver::contact_forces(const Step& step) {
   for (const Index index : bodies_) {
     step.workspace.body_contact[at(index)] = {};
   }
-  contact_report_ = contact_.evaluate(step.model, step.state.motion.data(), step.dt, step.workspace.contact,
-                                      step.workspace.body_contact.data());
+  contact_report_ =
+      contact_.evaluate(step.model, step.state, step.dt, step.workspace.contact, step.workspace.body_contact.data());
   contact_written_ = contact_report_.active_pairs > 0;
   for (const Index index : bodies_) {
     step.state.ledger[at(index)].contact_energy = step.workspace.body_contact[at(index)].energy;
@@ -308,7 +308,8 @@ void IslandSolver::contact_forces(const Step& step) {
 
 void IslandSolver::load_nodes(const Step& step) {
   parallel::for_each(static_cast<Index>(bodies_.size()), body_grain, [&](Index i) {
-    evaluate_loads(step.model, step.state.motion.data(), step.end_time, bodies_[at(i)], step.workspace.load.data());
+    evaluate_loads(step.model, step.state.motion.data(), step.state.layers.data(), step.dt == 0.0, step.end_time,
+                   bodies_[at(i)], step.workspace.load.data());
   });
 }
 
@@ -331,10 +332,10 @@ void IslandSolver::advance_patch(const Step& step, Pass pass, std::size_t piece)
   const Patches& patches = step.workspace.patches;
   const Patch& patch = patches.patches[at(pieces_[piece].patch)];
   std::fill_n(force, patch.force_count(), NodeForce{});
-  step.workspace.kernel.elements(
-      {step.state.motion.data(), step.model.triangle.data(), step.model.blocks.data(), step.workspace.sections.data(),
-       step.state.history.data(), patches.corner.data(), force, step.dt},
-      patch.blocks.begin, patch.blocks.end);
+  step.workspace.kernel.elements({step.state.motion.data(), step.model.triangle.data(), step.model.blocks.data(),
+                                  step.workspace.sections.data(), step.state.history.data(), patches.corner.data(),
+                                  force, step.dt, step.model.sections.data(), step.state.layers.data()},
+                                 patch.blocks.begin, patch.blocks.end);
   const NodeForce* share = force + patch.nodes.size();
   for (Index i = patch.border.begin; i < patch.border.end; ++i) {
     step.workspace.border_force[at(patches.border_place[at(i)])] = *share++;

@@ -32,7 +32,9 @@ struct ElementKernelArguments {
   /// one that nobody reads.
   const std::uint16_t* place{};
   NodeForce* force{};
-  double dt{};  ///< Step just taken [time]; 0 evaluates forces of the present state.
+  double dt{};                               ///< Step just taken [time]; 0 evaluates forces of the present state.
+  const model::SectionData* section_data{};  // [sections]; read for layered blocks
+  double* layers{};                          // [layered blocks][physics::layer_rows][block_lanes]
 };
 
 /// Updates resultants of blocks [begin, end) and adds their corner forces, element by element.
@@ -84,6 +86,7 @@ struct StepKernelArguments {
   const model::SectionData* sections{};    // [sections]
   double drilling{};                       ///< Drilling factor beta [-]
   const double* step_factor{};             // [elements]: by which mass scaling lengthens the step; none: by nothing
+  const double* layers{};                  // As those of the element kernel; deleted elements have no step
 };
 
 /// Smallest critical step over blocks [begin, end) in the present geometry.

@@ -7,8 +7,8 @@
 
 namespace fexp::solve {
 
-void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, double time, Index body_index,
-                    NodalAction* load) {
+void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, const double* layers, bool still,
+                    double time, Index body_index, NodalAction* load) {
   const model::Body& body = model.bodies[at(body_index)];
   Vec3d gravity;
   for (const model::GravityLoad& g : model.gravity) {
@@ -25,6 +25,9 @@ void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, 
   }
   for (Index i = body.pressure.begin; i < body.pressure.end; ++i) {
     const model::PressureLoad& pressure = model.pressure[at(i)];
+    if (model::is_deleted(model, layers, pressure.element, still ? 1 : 0)) {
+      continue;
+    }
     const auto& nodes = model.triangle[at(pressure.element)];
     const Vec3d a = motion[nodes[1]].position - motion[nodes[0]].position;
     const Vec3d b = motion[nodes[2]].position - motion[nodes[0]].position;
@@ -49,7 +52,7 @@ double sudden_load_energy(const model::Model& model, double dt) {
     if (body.barrier) {
       continue;
     }
-    evaluate_loads(model, start.motion.data(), 0.0, b, load.data());
+    evaluate_loads(model, start.motion.data(), start.layers.data(), true, 0.0, b, load.data());
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
       const NodalAction& f = load[at(n)];
       sum += dot(f.force, f.force) / model.mass[at(n)] + dot(f.moment, f.moment) / model.inertia[at(n)];

@@ -61,11 +61,12 @@ class Histories(program.Case):
             self.assertEqual(header[:2], ["step", "time [ms]"], name)
         self.assertEqual(headers["energies"][2:],
                          [f"{name} [kN*mm]" for name in
-                          ("kinetic", "internal", "contact", "barrier", "external", "damping", "balance")] +
+                          ("kinetic", "internal", "contact", "barrier", "external", "damping", "dissipated",
+                           "balance")] +
                          ["relative_error"])
         self.assertEqual(headers["steps"][2:],
                          ["dt [ms]", "critical_step [ms]", "islands", "largest_island_elements", "candidates",
-                          "contacts", "searches", "rollbacks", "deepest_penetration"])
+                          "contacts", "searches", "rollbacks", "deepest_penetration", "deleted"])
         self.assertEqual(headers["planes"][2:], ["floor_x [kN]", "floor_y [kN]", "floor_z [kN]"])
         self.assertEqual(headers["nodes"][2:5], ["set", "body", "node"])
         self.assertIn("acceleration_z [mm/ms^2]", headers["nodes"])

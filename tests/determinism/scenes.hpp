@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -132,11 +133,65 @@ inline model::Description swarm() {
   return d;
 }
 
+/// A shell of metal that buckles against a plate of another one, fast enough for both to flow everywhere, with all
+/// kinds of hardening: parts of the plate harden by a table and linearly, and the law of the ball depends on the rate.
+inline model::Description metals() {
+  model::Description d = with_contact(0.01);
+  d.run.energy_drift_limit = 1.0;
+  const physics::J2Law lead{1.0e3, 1.0e6, 0.4};
+  physics::JohnsonCook fast;
+  static_cast<physics::J2Power&>(fast) = physics::J2Power{{1.0e3, 1.0e6, 0.4, 0.05, 0.1}, 3.0e3, 4.0e3, 0.3};
+  physics::J2Table table{lead, {}};
+  table.table.append({0.0, 2.0e3});
+  table.table.append({0.01, 4.0e3});
+  table.table.append({0.05, 4.5e3});
+  d.materials[0].law = fast;
+  d.materials.push_back({"table", table, {}});
+  d.materials.push_back({"linear", physics::J2Linear{lead, 3.0e3, 1.0e4}, {}});
+  d.sections[0].points = 3;
+  d.sections.push_back({"table", "table", 0.01, {}, 5, "lobatto"});
+  d.sections.push_back({"linear", "linear", 0.012, {}, 2, "gauss"});
+  model::BodyDescription& ball = add_body(d, "ball", sphere(0.4, 7));
+  ball.translate = {0.05, 0.02, 0.43};
+  ball.velocity = {0.5, 0.0, -5.0};
+  for (const char* name : {"table", "linear"}) {
+    model::BodyDescription& half = add_body(d, name, plate(1.0, 12));
+    half.section = name;
+    half.translate = {name[0] == 't' ? -1.05 : 0.0, -0.5, 0.0};
+    half.angular_velocity = {0.0, 0.0, 1.0};
+  }
+  return d;
+}
+
+/// A ball of metal that is shot through a plate, whose elements fail and are deleted, and meets itself.
+inline model::Description shot() {
+  model::Description d = with_contact(0.01);
+  d.run.energy_drift_limit = 1.0;
+  d.run.step_collapse = 0.0;
+  physics::J2Law metal{1.0e3, 1.0e6, 0.3};
+  physics::J2Law brittle = metal;
+  brittle.failure_strain = 0.15;
+  d.materials[0].law = physics::J2Linear{metal, 2.0e4, 1.0e4};
+  d.materials.push_back({"brittle", physics::J2Power{brittle, 2.0e3, 3.0e3, 0.5}, {}});
+  d.sections[0].points = 3;
+  d.sections.push_back({"brittle", "brittle", 0.01, {}, 2, "gauss"});
+  model::BodyDescription& ball = add_body(d, "ball", sphere(0.25, 4));
+  ball.translate = {0.03, 0.02, 0.27};
+  ball.velocity = {1.0, 0.0, -25.0};
+  model::BodyDescription& sheet = add_body(d, "sheet", plate(1.2, 14));
+  sheet.section = "brittle";
+  sheet.translate = {-0.6, -0.6, 0.0};
+  d.pressure.push_back({{"sheet"}, "", 50.0, "", {}});
+  return d;
+}
+
 /// What must be the same however a scene is computed, and what proves that the scene is worth computing.
 struct Outcome {
   std::uint64_t state_hash{};
   std::vector<solve::HashRecord> hashes;
   cluster::RunExtremes extremes;
+  double plastic_strain{};  ///< Largest at the end [-]
+  Index deleted{};          ///< At the end
   std::size_t own_sides{};  ///< Sides between nodes and triangles of one body, seen at ends of epochs
 };
 
@@ -156,6 +211,13 @@ inline Outcome run_scene(const model::Model& model, double duration, solve::Kern
         const Index body = model.blocks[at(model.element_block[at(side.element)])].body;
         outcome.own_sides += model.node_body[at(side.node)] == body ? 1U : 0U;
       }
+    }
+  }
+  for (Index e = 0; e < model.element_count(); ++e) {
+    outcome.deleted += model::is_deleted(model, simulation.state().layers.data(), e) ? 1 : 0;
+    for (Index p = 0; p < model.section_of(e).layered.points.count; ++p) {
+      const Index row = physics::layer_points + p * physics::point_rows + physics::point_strain;
+      outcome.plastic_strain = std::max(outcome.plastic_strain, model::layer_value(model, simulation.state(), e, row));
     }
   }
   outcome.state_hash = model::state_hash(model, simulation.state());

@@ -144,7 +144,7 @@ class Contact {
     nodes.force.assign(nodes.force.size(), {});
     nodes.stiffness.assign(nodes.stiffness.size(), 0.0);
     bodies.assign(bodies.size(), {});
-    return island.evaluate(model, state.motion.data(), dt, nodes, bodies.data());
+    return island.evaluate(model, state, dt, nodes, bodies.data());
   }
 
   [[nodiscard]] double energy() const {

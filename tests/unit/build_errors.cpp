@@ -92,6 +92,56 @@ TEST(build_errors, a_section_of_an_unknown_material_is_named) {
   expect_one(errors_of(d), {"section \"u\"", "material \"wood\"", "accepted: m"});
 }
 
+/// The description with a plastic material given by a table.
+Description with_table(std::initializer_list<std::array<double, 2>> points) {
+  Description d = good();
+  physics::J2Table law{{1.0, 1.0, 0.3}, {}};
+  for (const auto& point : points) {
+    law.table.append(point);
+  }
+  d.materials[0].law = law;
+  d.materials[0].place = line_7;
+  return d;
+}
+
+TEST(build_errors, tables_that_do_not_rise_from_no_strain_are_refused) {
+  const std::string accepted = "strains ascending from 0, stresses > 0 that do not fall";
+  EXPECT_TRUE(errors_of(with_table({{0.0, 1.0}, {0.1, 1.0}, {0.2, 3.0}})).empty());
+  expect_one(errors_of(with_table({})), {"table of material \"m\" has no points", accepted});
+  expect_one(errors_of(with_table({{0.1, 1.0}})), {"begins at a strain of 0.1", accepted});
+  expect_one(errors_of(with_table({{0.0, 0.0}})), {"a yield stress of 0 at a strain of 0", accepted});
+  expect_one(errors_of(with_table({{0.0, 1.0}, {0.1, -1.0}})), {"a yield stress of -1 at a strain of 0.1", accepted});
+  expect_one(errors_of(with_table({{0.0, 1.0}, {0.1, 2.0}, {0.1, 3.0}})), {"a strain of 0.1 after one of 0.1"});
+  expect_one(errors_of(with_table({{0.0, 2.0}, {0.1, 1.5}})), {"a yield stress of 1.5 after one of 2"});
+}
+
+TEST(build_errors, hardening_as_stiff_as_the_elastic_material_is_refused) {
+  Description d = good();
+  d.materials[0].place = line_7;
+  d.materials[0].law = physics::J2Linear{{1.0, 2.0, 0.3}, 1.0, 1.9};
+  EXPECT_TRUE(errors_of(d).empty());
+  d.materials[0].law = physics::J2Linear{{1.0, 2.0, 0.3}, 1.0, 2.0};
+  expect_one(errors_of(d), {"tangent_modulus is 2, young is 2", "less than young"});
+}
+
+TEST(build_errors, points_through_the_thickness_that_no_rule_has_are_refused) {
+  Description d = good();
+  d.sections[0].place = line_7;
+  for (const int points : {1, 9}) {
+    d.sections[0].points = points;
+    EXPECT_TRUE(errors_of(d).empty());
+  }
+  for (const int points : {0, 10}) {
+    d.sections[0].points = points;
+    expect_one(errors_of(d), {"section \"s\"", "points", "1 to 9"});
+  }
+  d.sections[0].quadrature = "lobatto";
+  d.sections[0].points = 3;
+  EXPECT_TRUE(errors_of(d).empty());
+  d.sections[0].points = 2;
+  expect_one(errors_of(d), {"2 points of Lobatto's rule", "3 to 9"});
+}
+
 TEST(build_errors, names_given_twice_or_not_at_all_are_refused) {
   Description d = good();
   d.bodies[1].name = "plate";

@@ -174,7 +174,7 @@ TEST(gravity, gives_every_body_the_momentum_of_the_curve_under_its_integral) {
 /// Loads on body 0 at the positions of `state`.
 std::vector<solve::NodalAction> loads(const model::Model& model, const model::State& state, double time) {
   std::vector<solve::NodalAction> load(model.reference_position.size());
-  solve::evaluate_loads(model, state.motion.data(), time, 0, load.data());
+  solve::evaluate_loads(model, state.motion.data(), state.layers.data(), true, time, 0, load.data());
   return load;
 }
 

@@ -23,6 +23,15 @@ Model two_plates() {
   return test::build(d);
 }
 
+/// The same of a plastic material with 2 points through the thickness.
+Model two_plastic_plates() {
+  Description d = test::description(steel, 0.01);
+  d.materials[0].law = physics::J2Linear{{7850.0, 2.1e11, 0.3}, 250e6, 2e9};
+  d.sections[0].points = 2;
+  test::add_body(d, "p", Plate{1.0, 1.0, 3, 3, "one"}).array = Array{{2, 1, 1}, {3.0, 0.0, 0.0}};
+  return test::build(d);
+}
+
 /// Records of doubles alone as the doubles they are.
 template <class Records>
 double* numbers(Records& records) {
@@ -42,6 +51,7 @@ State random_state(const Model& model, unsigned seed) {
   fill(numbers(state.motion), 9 * state.motion.size());
   fill(numbers(state.acceleration), 6 * state.acceleration.size());
   fill(state.history.data(), state.history.size());
+  fill(state.layers.data(), state.layers.size());
   fill(numbers(state.ledger), 10 * state.ledger.size());
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     for (Index i = 0; i < 4; ++i) {
@@ -222,6 +232,59 @@ TEST(state_bytes, sides_that_the_body_cannot_have_are_refused) {
     EXPECT_FALSE(read_body_bytes(m, bytes_of(m, bad, 1), 1, s));
   }
   EXPECT_EQ(state_hash(m, s), before);
+}
+
+TEST(state_bytes, layers_begin_with_the_thickness_alone) {
+  const Model m = two_plastic_plates();
+  const State s = initial_state(m);
+  const Index rows = physics::layer_rows(2);
+  ASSERT_EQ(s.layers.size(), at(6 * rows * block_lanes));
+  for (Index e = 0; e < m.element_count(); ++e) {
+    for (Index row = 0; row < rows; ++row) {
+      EXPECT_EQ(layer_value(m, s, e, row), row == physics::layer_thickness ? 0.01 : 0.0);
+    }
+  }
+}
+
+TEST(state_bytes, layers_follow_the_rows_of_their_block) {
+  const Model m = two_plastic_plates();
+  const State s = random_state(m, 11);
+  const auto bytes = bytes_of(m, s, 1);
+  const std::size_t nodes = 16U * 15U * 8U, rows = 12U + 11U;
+  ASSERT_EQ(bytes.size(), nodes + 18U * rows * 8U + 8U + 4U * 9U + 80U);
+  const auto number_at = [&](std::size_t offset) {
+    double value;
+    std::memcpy(&value, bytes.data() + offset, sizeof(value));
+    return value;
+  };
+  const Index first = m.bodies[1].elements.begin;
+  EXPECT_EQ(number_at(nodes + 12 * 64), layer_value(m, s, first, physics::layer_thickness));
+  EXPECT_EQ(number_at(nodes + 15 * 64 + 8), layer_value(m, s, first + 1, Index{physics::layer_points} + Index{physics::point_sum}));
+  EXPECT_EQ(number_at(nodes + rows * 64), element_value(m, s, first + 8, row_nxx));
+}
+
+TEST(state_bytes, layers_are_read_back_copied_and_hashed_with_their_body) {
+  const Model m = two_plastic_plates();
+  const State from = random_state(m, 12);
+  State read = random_state(m, 13), copied = read;
+  const auto other = bytes_of(m, read, 0);
+  ASSERT_TRUE(read_body_bytes(m, bytes_of(m, from, 1), 1, read));
+  copy_body(m, from, 1, copied);
+  for (const State* s : {&read, &copied}) {
+    EXPECT_EQ(bytes_of(m, *s, 1), bytes_of(m, from, 1));
+    EXPECT_EQ(bytes_of(m, *s, 0), other);
+  }
+  const std::uint64_t before = state_hash(m, from);
+  for (const ElementBlock& block : m.blocks) {
+    for (Index row = 0; row < physics::layer_rows(2); ++row) {
+      for (Index lane = 0; lane < block_lanes; ++lane) {
+        State changed = from;
+        double& value = changed.layers[(at(block.layer_row) + at(row)) * at(block_lanes) + at(lane)];
+        value = -value;
+        EXPECT_EQ(state_hash(m, changed) != before, lane < block.count) << "a padding lane must not count";
+      }
+    }
+  }
 }
 
 TEST(state_bytes, appending_keeps_what_is_there) {

@@ -4,9 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <variant>
 
 #include "base/inline.hpp"
 #include "base/pack.hpp"
+#include "physics/layered_shell.hpp"
 #include "solve/kernels.hpp"
 
 namespace fexp::solve::kernels {
@@ -80,9 +82,11 @@ FEXP_INLINE void scatter(const std::array<std::array<double, 6>, 3>& corner, con
   }
 }
 
-/// Resultants and corner forces of lane_count<T> elements. `motion` and `history` are their places in first rows.
-template <class T>
-FEXP_INLINE void update(const physics::ShellStiffness& stiffness, double dt, const double* motion, double* history,
+/// Resultants and corner forces of lane_count<T> elements, of which the first is lane `first` of its block. `motion`
+/// and `history` are their places in first rows. `law` says what a step does to the resultants, and has the last word
+/// on the corner forces.
+template <class T, class Law>
+FEXP_INLINE void update(const Law& law, Index first, double dt, const double* motion, double* history,
                         const std::uint16_t* place, NodeForce* node_force) noexcept {
   using Access = Lanes<T>;
   const auto load_vector = [motion](Index row) {
@@ -111,7 +115,7 @@ FEXP_INLINE void update(const physics::ShellStiffness& stiffness, double dt, con
       load_row(model::row_qyz),
       {load_row(model::row_drill_1), load_row(model::row_drill_2), load_row(model::row_drill_3)},
       load_row(model::row_energy)};
-  physics::update_elastic(stiffness, T(0.5) * middle.doubled_area, increment, s);
+  law.step(first, dt, T(0.5) * middle.doubled_area, increment, s);
   store_row(model::row_nxx, s.nxx);
   store_row(model::row_nyy, s.nyy);
   store_row(model::row_nxy, s.nxy);
@@ -126,13 +130,60 @@ FEXP_INLINE void update(const physics::ShellStiffness& stiffness, double dt, con
   store_row(model::row_energy, s.energy);
 
   std::array<Vec3<T>, 3> force, moment;
-  physics::corner_forces(stiffness, frame, s, force, moment);
+  physics::corner_forces(law.stiffness, frame, s, force, moment);
   std::array<std::array<T, 6>, 3> corner;
   for (std::size_t c = 0; c < 3; ++c) {
     corner[c] = {force[c].x, force[c].y, force[c].z, moment[c].x, moment[c].y, moment[c].z};
   }
+  law.finish(first, corner);
   scatter(corner, place, node_force);
 }
+
+/// A linear elastic section.
+struct ElasticLaw {
+  const physics::ShellStiffness& stiffness;
+
+  template <class T>
+  FEXP_INLINE void step(Index, double, const T& area, const physics::ShellIncrement<T>& increment,
+                        physics::ShellResultants<T>& resultants) const noexcept {
+    physics::update_elastic(stiffness, area, increment, resultants);
+  }
+  template <class T>
+  FEXP_INLINE void finish(Index, std::array<std::array<T, 6>, 3>&) const noexcept {}
+};
+
+/// A section with points through the thickness, which harden by `curve`; `layers` are the block's rows.
+template <class Curve>
+struct LayeredLaw {
+  const physics::ShellStiffness& stiffness;
+  const physics::LayeredSection& section;
+  Curve curve;  // A copy, as compilers cannot know that what is stored of points leaves it alone
+  double* layers;
+
+  template <class T>
+  FEXP_INLINE void step(Index first, double dt, const T& area, const physics::ShellIncrement<T>& increment,
+                        physics::ShellResultants<T>& resultants) const noexcept {
+    if (dt > 0.0) {
+      const auto load = [&](int row) { return Lanes<T>::load(layers + at(row) * block_lanes + first); };
+      const auto store = [&](int row, const T& value) {
+        Lanes<T>::store(value, layers + at(row) * block_lanes + first);
+      };
+      physics::update_layered(stiffness, section, curve, dt, area, increment, load, store, resultants);
+    }
+  }
+  /// Deleted elements exert no force, whatever their geometry.
+  template <class T>
+  FEXP_INLINE void finish(Index first, std::array<std::array<T, 6>, 3>& corner) const noexcept {
+    if (section.plasticity.can_fail()) {
+      const T deleted = Lanes<T>::load(layers + at(physics::layer_deleted) * block_lanes + first);
+      for (std::array<T, 6>& actions : corner) {
+        for (T& value : actions) {
+          value = select_less(deleted, T(0.5), value, T(0.0));
+        }
+      }
+    }
+  }
+};
 
 /// Blocks of a group: their motion is gathered first and all at once, as the loads for one block would otherwise wait
 /// behind the arithmetic of the one before.
@@ -161,6 +212,35 @@ FEXP_INLINE const std::array<Index, 3>* full_lanes(
   return filled_up.data();
 }
 
+/// The elements of a block, from the motion of its first one on.
+template <class T, class Law>
+FEXP_INLINE void update_block(const ElementKernelArguments& k, Index index, const double* motion,
+                              const Law& law) noexcept {
+  const model::ElementBlock& block = k.blocks[index];
+  for (Index first = 0; first < block.count; first += lane_count<T>) {
+    update<T>(law, first, k.dt, motion + first, k.history + at(index) * model::element_rows * block_lanes + first,
+              k.place + 3 * (at(index) * block_lanes + at(first)), k.force);
+  }
+}
+
+/// Not inlined, to leave the loop over elastic blocks as small as it is.
+template <class T>
+[[gnu::noinline]] void update_layered_block(const ElementKernelArguments& k, Index index,
+                                            const double* motion) noexcept {
+  const model::ElementBlock& block = k.blocks[index];
+  const physics::LayeredSection& section = k.section_data[block.section].layered;
+  const physics::ShellStiffness& stiffness = k.sections[block.section];
+  double* const layers = k.layers + at(block.layer_row) * block_lanes;
+  const physics::Hardening& hardening = section.plasticity.hardening;
+  if (const auto* linear = std::get_if<physics::LinearHardening>(&hardening)) {
+    update_block<T>(k, index, motion, LayeredLaw<physics::LinearHardening>{stiffness, section, *linear, layers});
+  } else if (const auto* power = std::get_if<physics::PowerHardening>(&hardening)) {
+    update_block<T>(k, index, motion, LayeredLaw<physics::PowerHardening>{stiffness, section, *power, layers});
+  } else if (const auto* table = std::get_if<physics::TableHardening>(&hardening)) {
+    update_block<T>(k, index, motion, LayeredLaw<physics::TableHardening>{stiffness, section, *table, layers});
+  }
+}
+
 template <class T>
 inline void update_blocks(const ElementKernelArguments& k, Index begin, Index end) noexcept {
   constexpr Index width = lane_count<T>;
@@ -179,13 +259,13 @@ inline void update_blocks(const ElementKernelArguments& k, Index begin, Index en
       }
     }
     for (Index index = group; index < group_end; ++index) {
-      const model::ElementBlock& block = k.blocks[index];
+      const double* const block_rows = motion + at(index - group) * block_motion;
       prefetch_history(k, index + group_blocks);
-      for (Index first = 0; first < block.count; first += width) {
-        update<T>(k.sections[block.section], k.dt, motion + at(index - group) * block_motion + first,
-                  k.history + at(index) * model::element_rows * block_lanes + first,
-                  k.place + 3 * (at(index) * block_lanes + at(first)), k.force);
+      if (k.blocks[index].layer_row != no_index) {
+        update_layered_block<T>(k, index, block_rows);
+        continue;
       }
+      update_block<T>(k, index, block_rows, ElasticLaw{k.sections[k.blocks[index].section]});
     }
   }
 }

@@ -43,11 +43,18 @@ inline CriticalStep smallest_step(const StepKernelArguments& k, Index begin, Ind
     const model::ElementBlock& block = k.blocks[index];
     const model::SectionData& section = k.sections[block.section];
     const Index block_end = block.first + block.count;
+    const double* const deleted =
+        block.layer_row == no_index
+            ? nullptr
+            : k.layers + (at(block.layer_row) + physics::layer_deleted) * at(model::block_lanes) - block.first;
     for (Index e = block.first; e < block_end; e += width) {
       const std::array<Vec3<T>, 2> side = sides<T>(k, e, block_end - 1);
       const T steps = physics::element_critical_step({section.thickness, section.moduli, k.drilling}, section.density,
                                                      physics::triangle_frame(side[0], side[1]));
       for (int lane = 0; lane < width && e + lane < block_end; ++lane) {
+        if (deleted != nullptr && deleted[e + lane] != 0.0) {
+          continue;
+        }
         // A collapsed element has none, which the comparison takes for zero.
         const double factor = k.step_factor == nullptr ? 1.0 : k.step_factor[e + lane];
         const double step = factor * lane_of(steps, lane), usable = step > 0.0 ? step : 0.0;

@@ -28,6 +28,7 @@ extern const Command reference_command;
 extern const Command cluster_command;
 extern const Command probe_command;
 extern const Command resume_command;
+extern const Command verify_command;
 extern const Command worker_command;
 
 }  // namespace fexp::app

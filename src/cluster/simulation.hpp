@@ -159,6 +159,7 @@ class Simulation {
   double contact_frequency2_{};   ///< Contact's share of omega^2 in the last epoch [1/time^2]
   solve::Diagnostics start_;
   double energy_scale_{};
+  double sudden_energy_{};  // Open because of loads that come at once [force*length]
   double linear_scale_{};
   double angular_scale_{};
   RunExtremes extremes_;

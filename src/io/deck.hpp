@@ -9,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "base/field.hpp"
+#include "io/expectation.hpp"
 #include "io/history.hpp"
 #include "io/input_files.hpp"
 #include "model/description.hpp"
@@ -50,6 +51,7 @@ struct Deck {
   UnitNames units;
   model::Description description;
   OutputSettings output;
+  std::vector<Expectation> expectations;
 };
 
 /// Reads a deck from text. `file` is the name used in errors. Everything wrong is added to `errors`; the deck is usable

@@ -40,6 +40,8 @@ void for_each_section(SomeDeck& deck, Visitor& visitor) {
                 d.contact);
   visitor.table("output", "What to write and how often. Frames and rows stand at the start and the end, too.", optional,
                 deck.output);
+  visitor.list("expect", "A number that \"fexp verify\" takes from the histories and holds against a reference.",
+               optional, deck.expectations);
 }
 
 }  // namespace fexp::io

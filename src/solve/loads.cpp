@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/loads.hpp"
 
+#include <vector>
+
 #include "base/vec3.hpp"
 
 namespace fexp::solve {
@@ -33,6 +35,27 @@ void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, 
       load[node].force += third;
     }
   }
+}
+
+double sudden_load_energy(const model::Model& model, double dt) {
+  if (model.gravity.empty() && model.forces.empty() && model.pressure.empty()) {
+    return 0.0;
+  }
+  const model::State start = model::initial_state(model);
+  std::vector<NodalAction> load(start.motion.size());
+  double sum = 0.0;
+  for (Index b = 0; b < model.body_count(); ++b) {
+    const model::Body& body = model.bodies[at(b)];
+    if (body.barrier) {
+      continue;
+    }
+    evaluate_loads(model, start.motion.data(), 0.0, b, load.data());
+    for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
+      const NodalAction& f = load[at(n)];
+      sum += dot(f.force, f.force) / model.mass[at(n)] + dot(f.moment, f.moment) / model.inertia[at(n)];
+    }
+  }
+  return 0.125 * dt * dt * sum;
 }
 
 PlaneReaction plane_reaction(const model::Model& model, const model::RigidPlane& plane, Index node,

@@ -336,5 +336,42 @@ TEST(symmetry, half_a_body_moves_as_half_of_the_whole) {
   EXPECT_GT(moved, 0.01);
 }
 
+TEST(sudden_load_energy, is_an_eighth_of_the_squares_that_a_step_gives_free_nodes) {
+  model::Description d = tumbling(plate(1.0, 2));
+  EXPECT_EQ(solve::sudden_load_energy(test::build(d), 0.1), 0.0);
+  d.gravity.push_back({{3.0, 0.0, -4.0}, "", {}});
+  const model::Model heavy = test::build(d);
+  EXPECT_NEAR(solve::sudden_load_energy(heavy, 0.1), 0.01 * 25.0 * heavy.bodies[0].mass / 8.0, 1e-12);
+  d.gravity.back().curve = "ramp";  // From nothing
+  EXPECT_EQ(solve::sudden_load_energy(test::build(d), 0.1), 0.0);
+}
+
+/// A pull at the end of a resting strip, in whose first steps next to no energy is there yet; and a strip that takes
+/// too large steps, whose balance the watchdog must not put down to the load.
+TEST(sudden_load_energy, keeps_the_watchdog_from_sound_runs_alone) {
+  for (const bool sound : {true, false}) {
+    model::Description d = test::description(rubber, 0.1);
+    model::Plate strip = plate(1.0, 1);
+    strip.length_x = 10.0;
+    strip.cells_x = 20;
+    test::add_body(d, "strip", strip);
+    test::add_box_set(d, "end", {-0.01, -1.0, -1.0}, {0.01, 2.0, 1.0});
+    d.forces.push_back({"end", {-100.0, 0.0, 0.0}, {}, true, "", {}});
+    model::Model model = test::build(d);
+    if (!sound) {
+      for (double& mass : model.mass) {
+        mass *= 0.2;
+      }
+    }
+    cluster::Simulation simulation(model, solve::KernelChoice::automatic);
+    bool stopped = false;
+    const double step = model.run.safety * model.first_critical_step;
+    for (int i = 1; i <= 40 && !stopped; ++i) {
+      stopped = simulation.run_epoch(i * step).fault.kind != cluster::FaultKind::none;
+    }
+    EXPECT_EQ(stopped, !sound);
+  }
+}
+
 }  // namespace
 }  // namespace fexp

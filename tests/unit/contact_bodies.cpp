@@ -34,7 +34,7 @@ contact::ContactReport press(const model::Model& model, double depth, test::Cont
     state.motion[at(n)].position.z -= depth;
     state.motion[at(n)].velocity.z = -depth;
   }
-  contact.island.advance(model, state.motion.data(), depth);
+  contact.island.advance(model, state, depth);
   return contact.evaluate(model, state, 1.0);
 }
 
@@ -90,7 +90,7 @@ TEST(contact_bodies, touch_themselves_unless_the_deck_says_otherwise) {
       m.velocity = {m.position.x - before, 0.0, 0.0};
       way = std::max(way, norm(m.velocity));
     }
-    contact.island.advance(model, state.motion.data(), way);
+    contact.island.advance(model, state, way);
     return contact.evaluate(model, state, 1.0).active_pairs;
   };
   EXPECT_GT(pairs(d), 20);

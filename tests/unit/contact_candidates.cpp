@@ -190,7 +190,7 @@ TEST(candidates, no_pair_within_watch_distance_is_missed_over_random_motions) {
     ContactReport report;
     for (int i = 0; i < steps; ++i) {
       const double dt = 0.02, way = dance.step(state, i * dt, dt);
-      contact.island.advance(model, state.motion.data(), way);
+      contact.island.advance(model, state, way);
       report = contact.evaluate(model, state, dt);
       contact.island.store_sides(model, state);
       std::set<Pair> remembered;

@@ -55,7 +55,7 @@ TEST(contact_timing, a_search_before_every_step_from_the_stored_sides_changes_no
       seldom.island.store_sides(model, one);
       twin.assign(model, one);
       const contact::ContactReport report_twin = twin.evaluate(model, middle, dt);
-      seldom.island.advance(model, middle.motion.data(), way);
+      seldom.island.advance(model, middle, way);
       const contact::ContactReport report = seldom.evaluate(model, middle, dt);
       twin.island.store_sides(model, one);
       seldom.island.store_sides(model, two);

@@ -67,7 +67,7 @@ TEST(elementary, packs_of_every_width_give_the_bits_of_doubles) {
   std::uniform_real_distribution<double> decade(-290.0, 290.0);
   const auto compare = [&]<int W>(std::integral_constant<int, W>) {
     for (int i = 0; i < 2000; ++i) {
-      std::array<double, std::size_t(W)> x{};
+      std::array<double, static_cast<std::size_t>(W)> x{};
       Pack<W> packed;
       for (int lane = 0; lane < W; ++lane) {
         x[static_cast<std::size_t>(lane)] = std::pow(10.0, decade(random));

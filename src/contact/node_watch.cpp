@@ -65,11 +65,9 @@ void NodeWatch::gather(std::span<const Index> candidates, std::span<const model:
   deep_.clear();
   through_.clear();
   followed_.clear();
-  elements_.clear();
-  for (const Index element : candidates) {
-    if (now_.has(model_, element)) {
-      elements_.push_back(element);
-    }
+  elements_.assign(candidates.begin(), candidates.end());
+  if (now_.layers != nullptr) {
+    std::erase_if(elements_, [this](Index element) { return !now_.has(model_, element); });
   }
   if (memory.empty()) {
     return;

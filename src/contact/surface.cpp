@@ -55,9 +55,13 @@ double view_at_outermost_edge(const model::Model& model, Normals& normals, Index
 
 }  // namespace
 
-bool Positions::has_surface_at(const model::Model& model, Index node) const noexcept {
+bool Positions::has_left(const model::Model& model, Index element) const noexcept {
+  return !model::is_deleted(model, layers, element, still ? 1 : 0);
+}
+
+bool Positions::has_left_at(const model::Model& model, Index node) const noexcept {
   for (Index c = model.corner_start[at(node)]; c < model.corner_start[at(node) + 1]; ++c) {
-    if (has(model, model.corner[at(c)] / 3)) {
+    if (has_left(model, model.corner[at(c)] / 3)) {
       return true;
     }
   }

@@ -21,10 +21,16 @@ struct Positions {
     return back == 0.0 ? m.position : m.position - back * m.velocity;
   }
   [[nodiscard]] bool has(const model::Model& model, Index element) const noexcept {
-    return layers == nullptr || !model::is_deleted(model, layers, element, still ? 1 : 0);
+    return layers == nullptr || has_left(model, element);
   }
   /// Whether an element of the node is left.
-  [[nodiscard]] bool has_surface_at(const model::Model& model, Index node) const noexcept;
+  [[nodiscard]] bool has_surface_at(const model::Model& model, Index node) const noexcept {
+    return layers == nullptr || has_left_at(model, node);
+  }
+
+ private:
+  [[nodiscard]] bool has_left(const model::Model& model, Index element) const noexcept;
+  [[nodiscard]] bool has_left_at(const model::Model& model, Index node) const noexcept;
 };
 
 [[nodiscard]] inline physics::ClosestPoint closest_on(const model::Model& model, const Positions& x, Index element,

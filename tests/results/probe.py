@@ -57,6 +57,8 @@ class Expected:
             "von_mises_bottom": surface["bottom"],
             "energy_density": row[:, 11] / (self.area * t),
             "thickness": np.full(self.elements, t),
+            "plastic_strain": np.zeros(self.elements),
+            "deleted": np.zeros(self.elements),
             "body": self.body,
             "island": self.body // 2,
         }

@@ -16,7 +16,7 @@ ROW = ("elements", "nodes", "threads", "repetitions", "element_steps_per_second"
        "share_of_separate_peak_flops", "heap_bytes_per_element", "least_bytes_per_element")
 SEARCH = ("elements", "nodes", "threads", "repetitions", "points_per_second", "queries_per_second",
           "points_per_query", "triad_bandwidth", "peak_flops")
-CASES = {"plate", "four_spheres", "quiet_contact", "separate_spheres", "meeting_spheres"}
+CASES = {"plate", "johnson_cook", "four_spheres", "quiet_contact", "separate_spheres", "meeting_spheres"}
 
 
 class Bench(program.Case):

@@ -259,7 +259,8 @@ TEST(state_bytes, layers_follow_the_rows_of_their_block) {
   };
   const Index first = m.bodies[1].elements.begin;
   EXPECT_EQ(number_at(nodes + 12 * 64), layer_value(m, s, first, physics::layer_thickness));
-  EXPECT_EQ(number_at(nodes + 15 * 64 + 8), layer_value(m, s, first + 1, Index{physics::layer_points} + Index{physics::point_sum}));
+  EXPECT_EQ(number_at(nodes + 15 * 64 + 8),
+            layer_value(m, s, first + 1, physics::layer_points + Index{physics::point_sum}));
   EXPECT_EQ(number_at(nodes + rows * 64), element_value(m, s, first + 8, row_nxx));
 }
 

@@ -64,7 +64,7 @@ Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, Wo
       notices_(model.bodies.size()),
       owner_(model.bodies.size(), no_machine),
       arrived_(model.bodies.size(), true),
-      sudden_energy_(solve::sudden_load_energy(model, model.run.safety * model.first_critical_step)) {
+      sudden_energy_(solve::sudden_load_energy(model, state_, model.run.safety * model.first_critical_step)) {
   parallel::for_each(model_.body_count(), 1, [&](Index b) {
     if (model_.bodies[at(b)].barrier) {
       notices_[at(b)] = notice_of(model_, state_, state_, b);

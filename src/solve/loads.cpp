@@ -40,11 +40,10 @@ void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, 
   }
 }
 
-double sudden_load_energy(const model::Model& model, double dt) {
+double sudden_load_energy(const model::Model& model, const model::State& start, double dt) {
   if (model.gravity.empty() && model.forces.empty() && model.pressure.empty()) {
     return 0.0;
   }
-  const model::State start = model::initial_state(model);
   std::vector<NodalAction> load(start.motion.size());
   double sum = 0.0;
   for (Index b = 0; b < model.body_count(); ++b) {

@@ -15,8 +15,8 @@ void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, 
 
 /// Energy by which the balance of a sound run may be open because loads are there at once at time zero [force*length].
 /// What central differences keep [BLM00, sec. 6.2.4 without damping] is the balance less sum dt^2 a.M a/8, and free
-/// nodes get a = M^-1 f at once: sum dt^2 f.M^-1 f/8 over the nodes, `dt` the step.
-[[nodiscard]] double sudden_load_energy(const model::Model& model, double dt);
+/// nodes get a = M^-1 f at once: sum dt^2 f.M^-1 f/8 over the nodes, `dt` the step, `start` the state at time zero.
+[[nodiscard]] double sudden_load_energy(const model::Model& model, const model::State& start, double dt);
 
 /// Force of a rigid plane on a node, and its potential.
 struct PlaneReaction {

@@ -336,14 +336,18 @@ TEST(symmetry, half_a_body_moves_as_half_of_the_whole) {
   EXPECT_GT(moved, 0.01);
 }
 
+double sudden_energy(const model::Model& model) {
+  return solve::sudden_load_energy(model, model::initial_state(model), 0.1);
+}
+
 TEST(sudden_load_energy, is_an_eighth_of_the_squares_that_a_step_gives_free_nodes) {
   model::Description d = tumbling(plate(1.0, 2));
-  EXPECT_EQ(solve::sudden_load_energy(test::build(d), 0.1), 0.0);
+  EXPECT_EQ(sudden_energy(test::build(d)), 0.0);
   d.gravity.push_back({{3.0, 0.0, -4.0}, "", {}});
   const model::Model heavy = test::build(d);
-  EXPECT_NEAR(solve::sudden_load_energy(heavy, 0.1), 0.01 * 25.0 * heavy.bodies[0].mass / 8.0, 1e-12);
+  EXPECT_NEAR(sudden_energy(heavy), 0.01 * 25.0 * heavy.bodies[0].mass / 8.0, 1e-12);
   d.gravity.back().curve = "ramp";  // From nothing
-  EXPECT_EQ(solve::sudden_load_energy(test::build(d), 0.1), 0.0);
+  EXPECT_EQ(sudden_energy(test::build(d)), 0.0);
 }
 
 /// A pull at the end of a resting strip, in whose first steps next to no energy is there yet; and a strip that takes

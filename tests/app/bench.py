@@ -14,8 +14,8 @@ ROW = ("elements", "nodes", "threads", "repetitions", "element_steps_per_second"
        "microseconds_per_step", "steps", "islands", "flops_per_element_step", "bytes_per_element_step",
        "triad_bandwidth", "peak_flops", "separate_peak_flops", "share_of_triad_bandwidth", "share_of_peak_flops",
        "share_of_separate_peak_flops", "heap_bytes_per_element", "least_bytes_per_element")
-SEARCH = ("elements", "nodes", "threads", "repetitions", "points_per_second", "queries_per_second",
-          "points_per_query", "triad_bandwidth", "peak_flops")
+SEARCH = ("elements", "nodes", "threads", "repetitions", "tree_elements_per_second",
+          "search_elements_per_second", "triad_bandwidth", "peak_flops")
 CASES = {"plate", "johnson_cook", "four_spheres", "quiet_contact", "separate_spheres", "meeting_spheres"}
 
 

@@ -208,8 +208,7 @@ std::string steps_text(const BenchMachine& machine, const std::vector<bench::Ste
          fmt::format(
              "  an element-step has {} flops, and {} for each of its {:.2f} nodes: {:.0f}; it moves {:.0f} bytes at "
              "the "
-             "least where\n  nothing stays in a cache, so that more than 100 % of the triad says that much does; "
-             "what "
+             "least where\n  nothing stays in a cache, so that more than 100 % of the triad says that much does; what "
              "contact does is in neither\n\n",
              cost.element.flops(), cost.node.flops(), cost.nodes, cost.flops(), cost.least_bytes());
 }

@@ -64,6 +64,7 @@ Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, Wo
       notices_(model.bodies.size()),
       owner_(model.bodies.size(), no_machine),
       arrived_(model.bodies.size(), true),
+      loads_end_(model.run.is_static() ? end_of_curves(model) : 0.0),
       sudden_energy_(solve::sudden_load_energy(model, state_, model.run.safety * model.first_critical_step)) {
   parallel::for_each(model_.body_count(), 1, [&](Index b) {
     if (model_.bodies[at(b)].barrier) {
@@ -290,7 +291,7 @@ void Simulation::relax() {
   for (const BodyNotice& notice : notices_) {
     sums += notice.relaxation;
   }
-  relaxation_.add(sums, model_.run, state_.time, end_of_curves(model_));
+  relaxation_.add(sums, model_.run, state_.time, loads_end_);
 }
 
 void Simulation::gather(const RankRecord& record, EpochReport& report) const {

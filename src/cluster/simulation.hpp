@@ -162,6 +162,7 @@ class Simulation {
   double contact_frequency2_{};   ///< Contact's share of omega^2 in the last epoch [1/time^2]
   solve::Diagnostics start_;
   double energy_scale_{};
+  double loads_end_{};      // Of a static analysis: when loads change no more [time]
   double sudden_energy_{};  // Open because of loads that come at once [force*length]
   Relaxation relaxation_;   // Of a static analysis
   double linear_scale_{};

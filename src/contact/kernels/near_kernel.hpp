@@ -32,7 +32,7 @@ FEXP_INLINE void store_vector(const Vec3<T>& v, BlockTriangles& triangles, Index
 /// 1 / a, and 0 where a is 0.
 template <class T>
 FEXP_INLINE T inverse_or_zero(const T& a) noexcept {
-  return T((a.v > T(0.0).v) ? (T(1.0) / a).v : T(0.0).v);
+  return select_less(T(0.0), a, T(1.0) / a, T(0.0));
 }
 
 template <class T>
@@ -82,7 +82,7 @@ void prepare(const SearchGeometry& g, const model::ElementBlock& block, BlockTri
     const T normal2 = dot(normal, normal), inverse_normal2 = inverse_or_zero(normal2);
     store_vector(normal, triangles, row_normal, lane);
     inverse_normal2.store(&triangles.rows[at(row_inverse_normal2)][lane]);
-    const T usable(normal2.v > (T(sliver_sine * sliver_sine) * longest2 * longest2).v ? inverse_normal2.v : T(0.0).v);
+    const T usable = select_less(T(sliver_sine * sliver_sine) * longest2 * longest2, normal2, inverse_normal2, T(0.0));
     (T(bound_part) * usable).store(&triangles.rows[at(row_bound_scale)][lane]);
     const T margin = (thickest + T(g.skin)) * T(1.0 + distance_rounding);
     const Vec3<T> margins{margin, margin, margin};
@@ -127,7 +127,7 @@ struct PointAndTriangles {
       edge2[c] = dot(offset, offset);
     }
     const T to_edges = minimum(edge2[0], minimum(edge2[1], edge2[2]));
-    return T(least_inside.v > T(0.0).v ? minimum(plane2, to_edges).v : to_edges.v);
+    return select_less(T(0.0), least_inside, minimum(plane2, to_edges), to_edges);
   }
 };
 

@@ -18,6 +18,8 @@ NAMES = ("c1", "c2", "c3")
 class Hosts(real.Case):
     """Three of them, in a network of their own."""
 
+    seconds = 6.0
+
     def setUp(self):
         super().setUp()
         place = program.tempfile.TemporaryDirectory(prefix="fexp-lab-")

@@ -2,7 +2,9 @@
 """Cluster runs with workers that compute, compared with a run on one machine."""
 
 import json
+import math
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -18,19 +20,39 @@ REFERENCES = Path(KEEP.name)
 EXAMPLES = cluster.HERE.parent.parent / "examples"
 
 
+def write_deck_that_takes(seconds, deck_file, target):
+    """Writes a deck as long as one thread of this machine computes for so many seconds, but not shorter than it is. What
+    happens to machines during a run takes time of its own, which must not be longer than the run is on a fast machine."""
+    text = deck_file.read_text(encoding="utf-8")
+    duration = re.compile(r"^duration = ([0-9.]+)$", re.MULTILINE)
+    given = float(duration.search(text)[1])
+    target.write_text(duration.sub(f"duration = {given / 10}", text), encoding="utf-8")
+    trial = json.loads(subprocess.run([program.PROGRAM, "run", target, "--out", target.with_suffix(".trial"), "--json",
+                                       "--quiet", "--threads", "1"], check=True, capture_output=True, text=True).stdout)
+    times = math.ceil(seconds / (10 * trial["wall_seconds"]))
+    target.write_text(duration.sub(f"duration = {given * max(times, 1)}", text), encoding="utf-8")
+
+
 class Case(cluster.Case):
     """A test of one deck; `deck_file` names it. The run on one machine is made once for all tests of a deck."""
 
     deck_file = cluster.HERE / "box.toml"
     run_words = ("--hash-every", "10")
+    seconds = 0.0  # How long one thread has to compute, at least
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
         cls.reference = REFERENCES / cls.deck_file.stem
+        cls.deck = cls.deck_file
+        if cls.seconds:
+            cls.deck = REFERENCES / f"{cls.deck_file.stem}_{cls.seconds}.toml"
+            cls.reference = cls.deck.with_suffix(".run")
+            if not cls.deck.exists():
+                write_deck_that_takes(cls.seconds, cls.deck_file, cls.deck)
         if cls.reference.exists():
             return
-        result = subprocess.run([program.PROGRAM, "run", cls.deck_file, "--out", cls.reference, "--json", "--quiet",
+        result = subprocess.run([program.PROGRAM, "run", cls.deck, "--out", cls.reference, "--json", "--quiet",
                                  *cls.run_words], check=False, capture_output=True, text=True, timeout=200)
         if result.returncode != 0:
             raise RuntimeError(f"the run on one machine failed: {result.stderr}")
@@ -39,7 +61,7 @@ class Case(cluster.Case):
         super().setUp()
         del self.environment["FEXP_WORKER"]
         self.environment.update(ROOT)
-        shutil.copy(self.deck_file, self.folder / "deck.toml")
+        shutil.copy(self.deck, self.folder / "deck.toml")
 
     def write_deck(self, name="deck.toml", **changes):
         """There is one already."""

@@ -23,7 +23,7 @@ std::vector<Column> first_columns(const io::UnitNames& units) { return {{"step",
 std::vector<Column> energy_columns(const io::UnitNames& units) {
   std::vector<Column> columns = first_columns(units);
   for (const char* name :
-       {"kinetic", "internal", "contact", "barrier", "external", "damping", "dissipated", "balance"}) {
+       {"kinetic", "internal", "contact", "barrier", "external", "damping", "friction", "dissipated", "balance"}) {
     columns.push_back({name, units.of(energy)});
   }
   columns.push_back({"relative_error", ""});
@@ -78,7 +78,7 @@ std::vector<Column> bodies_columns(const io::UnitNames& units) {
   io::add_vector_columns(columns, "velocity", units.of("length/time"));
   io::add_vector_columns(columns, "spin", units.of(angular_momentum));
   io::add_vector_columns(columns, "contact_force", units.of("force"));
-  for (const char* name : {"kinetic", "internal", "contact", "barrier", "external", "damping"}) {
+  for (const char* name : {"kinetic", "internal", "contact", "barrier", "external", "damping", "friction"}) {
     columns.push_back({name, units.of(energy)});
   }
   return columns;
@@ -188,7 +188,7 @@ void Histories::write(const cluster::Simulation& simulation, const cluster::Epoc
 void Histories::write_energies(const cluster::Simulation& simulation, const cluster::EpochReport& report) {
   const solve::Energies& e = report.diagnostics.energies;
   energies_.row({Cell(simulation.state().step), simulation.state().time, e.kinetic, e.internal, e.contact, e.barrier,
-                 e.external, e.damping, e.dissipated, e.balance(), report.energy_error});
+                 e.external, e.damping, e.friction, e.dissipated, e.balance(), report.energy_error});
 }
 
 void Histories::write_momenta(const cluster::Simulation& simulation, const cluster::EpochReport& report) {
@@ -257,7 +257,7 @@ void Histories::write_bodies(const cluster::Simulation& simulation) {
     io::add_vector_cells(cells, diagnostics.momenta.angular - cross(sums.centre, diagnostics.momenta.linear));
     io::add_vector_cells(cells, sums.contact_force);
     const solve::Energies& e = diagnostics.energies;
-    cells.insert(cells.end(), {e.kinetic, e.internal, e.contact, e.barrier, e.external, e.damping});
+    cells.insert(cells.end(), {e.kinetic, e.internal, e.contact, e.barrier, e.external, e.damping, e.friction});
     bodies_->row(cells);
   }
 }

@@ -50,8 +50,8 @@ std::string energies_text(const solve::Energies& a, const solve::Energies& b, co
          line("internal", a.internal, b.internal) +
          (b.dissipated > 0.0 ? line("  dissipated", a.dissipated, b.dissipated) : "") +
          line("contact", a.contact, b.contact) + line("barrier", a.barrier, b.barrier) +
-         line("damping", a.damping, b.damping) + line("external", a.external, b.external) +
-         line("balance", a.balance(), b.balance());
+         line("damping", a.damping, b.damping) + line("friction", a.friction, b.friction) +
+         line("external", a.external, b.external) + line("balance", a.balance(), b.balance());
 }
 
 std::string added_mass_text(const io::Summary::AddedMass& part, const std::string& unit) {
@@ -97,7 +97,7 @@ io::Summary summarise(const Case& loaded, const cluster::Simulation& simulation,
                                                static_cast<double>(model.element_count()) / end.stepping_seconds
                                          : 0.0;
   const solve::Energies& e = end.last.diagnostics.energies;
-  summary.energies = {e.kinetic, e.internal, e.contact, e.barrier, e.external, e.damping, e.balance()};
+  summary.energies = {e.kinetic, e.internal, e.contact, e.barrier, e.external, e.damping, e.friction, e.balance()};
   if (model.run.is_static()) {
     summary.residual = simulation.relaxation().residual();
   }

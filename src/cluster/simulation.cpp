@@ -315,8 +315,8 @@ void Simulation::judge(EpochReport& report) {
   report.diagnostics = sum_of_diagnostics();
   const solve::Energies& e = report.diagnostics.energies;
   const solve::Momenta& m = report.diagnostics.momenta;
-  energy_scale_ = std::max(
-      {energy_scale_, std::abs(e.external), e.kinetic + std::abs(e.internal) + e.contact + e.barrier + e.damping});
+  energy_scale_ = std::max({energy_scale_, std::abs(e.external),
+                            e.kinetic + std::abs(e.internal) + e.contact + e.barrier + e.damping + e.friction});
   linear_scale_ = std::max(linear_scale_, m.linear_scale);
   angular_scale_ = std::max(angular_scale_, m.angular_scale);
   const double open = std::abs(e.balance() - start_.energies.balance());

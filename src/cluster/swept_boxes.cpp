@@ -92,6 +92,11 @@ BodyExtent extent_of(const model::Model& model, const model::State& state, Index
     extent.box.include(state.motion[at(side.node)].position);
     extent.box.include(state.motion[at(model.triangle[at(side.element)][0])].position);
   }
+  for (const model::EdgeSide& side : state.edge_sides[at(body)]) {
+    for (const Index edge : {side.first, side.second}) {
+      extent.box.include(state.motion[at(model.triangle[at(edge / 3)][at(edge % 3)])].position);
+    }
+  }
   return extent;
 }
 

@@ -49,6 +49,7 @@ void IslandContact::assign(const model::Model& model, std::span<const Index> bod
   searched_ = false;
   moved_ = 0.0;
   enabled_ = model.contact.enabled && (bodies.size() + barriers.size() > 1 || model.can_touch(bodies[0], bodies[0]));
+  with_edges_ = enabled_ && model.contact.edges;
   if (!enabled_) {
     return;
   }
@@ -66,6 +67,9 @@ void IslandContact::assign(const model::Model& model, std::span<const Index> bod
     piece.memory.insert(piece.memory.end(), state.sides[at(body)].begin(), state.sides[at(body)].end());
   }
   std::sort(piece.memory.begin(), piece.memory.end(), by_pair);
+  if (with_edges_) {
+    edges_.assign(model, bodies, all, state);
+  }
 }
 
 std::vector<model::ContactSide> IslandContact::all_sides() const {
@@ -79,10 +83,16 @@ std::vector<model::ContactSide> IslandContact::all_sides() const {
 void IslandContact::store_sides(const model::Model& model, model::State& state) const {
   for (const Index body : bodies_) {
     state.sides[at(body)].clear();
+    state.edge_sides[at(body)].clear();
   }
   for (const Piece& piece : pieces_) {
     for (const model::ContactSide& side : piece.memory) {
       state.sides[at(owner(model, side.node, side.element))].push_back(side);
+    }
+  }
+  if (with_edges_) {
+    for (const model::EdgeSide& side : edges_.all_sides()) {
+      state.edge_sides[at(owner(model, ends_of(model, side.first)[0], side.second / 3))].push_back(side);
     }
   }
 }
@@ -136,6 +146,10 @@ void IslandContact::search(const model::Model& model, const Positions& x) {
   searched_ = true;
   ++report_.searches;
   report_.candidates = static_cast<Index>(candidates_.element.size());
+  if (with_edges_) {
+    edges_.search(model, x, skin_);
+    report_.candidates += edges_.candidate_count();
+  }
 }
 
 void IslandContact::cut_into_pieces(const std::vector<model::ContactSide>& memory) {
@@ -185,6 +199,9 @@ ContactReport IslandContact::evaluate(const model::Model& model, const model::St
   if (!searched_) {
     search(model, now);
   }
+  if (with_edges_) {
+    edges_.look(model, now, before, moved_);
+  }
   parallel::for_each(static_cast<Index>(pieces_.size()), piece_grain,
                      [&](Index i) { look(model, now, before, pieces_[at(i)]); });
   report_.active_pairs = 0;
@@ -196,33 +213,51 @@ ContactReport IslandContact::evaluate(const model::Model& model, const model::St
       add(model, now, pair, nodes, bodies);
     }
   }
+  if (with_edges_) {
+    edges_.for_each_active([&](const ActiveEdges& pair) { add(model, now, pair, nodes, bodies); });
+  }
   report_.max_stiffness_over_mass = 0.0;
+  const double factor = 2.0 * drag_law_of(model).frequency2_factor();
+  const auto look_at = [&](Index n) {
+    report_.max_stiffness_over_mass =
+        std::max(report_.max_stiffness_over_mass, factor * nodes.stiffness[at(n)] / model.mass[at(n)]);
+  };
   for (const Piece& piece : pieces_) {
     for (const ActivePair& pair : piece.active) {
-      const auto& t = model.triangle[at(pair.element)];
-      for (const Index n : {pair.node, t[0], t[1], t[2]}) {
-        report_.max_stiffness_over_mass =
-            std::max(report_.max_stiffness_over_mass, 2.0 * nodes.stiffness[at(n)] / model.mass[at(n)]);
-      }
+      look_at(pair.node);
+      std::ranges::for_each(model.triangle[at(pair.element)], look_at);
     }
   }
+  if (with_edges_) {
+    edges_.for_each_active([&](const ActiveEdges& pair) {
+      std::ranges::for_each(ends_of(model, pair.first), look_at);
+      std::ranges::for_each(ends_of(model, pair.second), look_at);
+    });
+  }
   return report_;
+}
+
+void IslandContact::count(double stiffness, double depth, Index node, Index element) {
+  if (stiffness > 0.0) {
+    ++report_.active_pairs;
+  }
+  if (depth > report_.deepest) {
+    report_.deepest = depth;
+    report_.deepest_node = node;
+    report_.deepest_element = element;
+  }
 }
 
 /// Adds a pair's force to its node and the opposite to the corners, in equal and opposite parts. Pairs come in
 /// ascending order, so the sums are the same whatever thread found them.
 void IslandContact::add(const model::Model& model, const Positions& x, const ActivePair& pair, NodeContact& nodes,
                         BodyContact* bodies) {
-  ++report_.active_pairs;
-  if (pair.depth > report_.deepest) {
-    report_.deepest = pair.depth;
-    report_.deepest_node = pair.node;
-    report_.deepest_element = pair.element;
-  }
+  count(pair.stiffness, pair.depth, pair.node, pair.element);
   const bool barrier_node = model.bodies[at(model.node_body[at(pair.node)])].barrier;
   const bool barrier_element = model.bodies[at(body_of_element(model, pair.element))].barrier;
   BodyContact& body = bodies[owner(model, pair.node, pair.element)];
   body.energy += pair.energy;
+  body.dissipated += pair.dissipated;
   if (!barrier_node) {
     nodes.force[at(pair.node)] += pair.force;
     nodes.stiffness[at(pair.node)] += pair.stiffness;
@@ -242,6 +277,36 @@ void IslandContact::add(const model::Model& model, const Positions& x, const Act
       body.barrier_force -= share[a];
       body.barrier_moment -= cross(x(t[a]), share[a]);
     }
+  }
+}
+
+/// The same for a pair of edges.
+void IslandContact::add(const model::Model& model, const Positions& x, const ActiveEdges& pair, NodeContact& nodes,
+                        BodyContact* bodies) {
+  const std::array<Index, 2> first = ends_of(model, pair.first), second = ends_of(model, pair.second);
+  count(pair.stiffness, pair.depth, second[0], pair.first / 3);
+  BodyContact& body = bodies[owner(model, first[0], pair.second / 3)];
+  body.energy += pair.energy;
+  body.dissipated += pair.dissipated;
+  const auto is_barrier = [&](Index n) { return model.bodies[at(model.node_body[at(n)])].barrier; };
+  const bool with_barrier = is_barrier(first[0]) || is_barrier(second[0]);
+  const auto act = [&](Index n, const Vec3d& force, double weight) {
+    if (is_barrier(n)) {
+      return;
+    }
+    nodes.force[at(n)] += force;
+    nodes.stiffness[at(n)] += weight * pair.stiffness;
+    if (with_barrier) {
+      body.barrier_force += force;
+      body.barrier_moment += cross(x(n), force);
+    }
+  };
+  act(first[0], pair.force[0], 1.0 - pair.at_first);
+  act(first[1], pair.force[1], pair.at_first);
+  act(second[0], pair.force[2], 1.0 - pair.at_second);
+  act(second[1], pair.force[3], pair.at_second);
+  if (pair.corner != no_index) {
+    act(pair.corner, pair.corner_force, 0.0);
   }
 }
 

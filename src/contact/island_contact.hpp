@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/candidates.hpp"
+#include "contact/edge_contact.hpp"
 #include "contact/node_watch.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
@@ -14,6 +15,7 @@ namespace fexp::contact {
 /// Sums of contact over one body at one instant.
 struct BodyContact {
   double energy{};       ///< Potential of the pairs booked to the body [force*length]
+  double dissipated{};   ///< What these have dissipated in the step [force*length]
   Vec3d barrier_force;   ///< Force of barriers on the body [force]
   Vec3d barrier_moment;  ///< The same about the origin [force*length]
 };
@@ -21,7 +23,7 @@ struct BodyContact {
 /// Contact forces on the nodes of a model; each island writes its own bodies' part, barriers get nothing.
 struct NodeContact {
   std::vector<Vec3d> force;       // [nodes] [force]
-  std::vector<double> stiffness;  // [nodes]: sum over pairs of k x weight [force/length]
+  std::vector<double> stiffness;  // [nodes]: sum over pairs of k x weight, more by damping [force/length]
 };
 
 struct ContactReport {
@@ -35,7 +37,8 @@ struct ContactReport {
 };
 
 /// Contact inside one island: of its bodies with each other, with themselves and with the barriers near them. A pair
-/// belongs to the body of its node, or to that of its element when the node is a barrier's.
+/// belongs to the body of its node, or to that of its element when the node is a barrier's; a pair of edges to that of
+/// the first, or of the second when the first is a barrier's.
 class IslandContact {
  public:
   /// Takes up an island, with the sides that the state remembers. `bodies` and `barriers` are ascending.
@@ -68,12 +71,16 @@ class IslandContact {
   void look(const model::Model& model, const Positions& now, const Positions& before, Piece& piece) const;
   void add(const model::Model& model, const Positions& x, const ActivePair& pair, NodeContact& nodes,
            BodyContact* bodies);
+  void add(const model::Model& model, const Positions& x, const ActiveEdges& pair, NodeContact& nodes,
+           BodyContact* bodies);
+  void count(double stiffness, double depth, Index node, Index element);
   [[nodiscard]] std::vector<model::ContactSide> all_sides() const;
   [[nodiscard]] double relative_motion(const Positions& x);
   [[nodiscard]] static Index owner(const model::Model& model, Index node, Index element);
 
   CandidateSearch search_;
   Candidates candidates_;
+  EdgeContact edges_;
   std::vector<Piece> pieces_;
   std::vector<Vec3d> searched_at_;  // [search_.nodes()]: positions at the last search
   std::vector<Index> bodies_;
@@ -81,6 +88,7 @@ class IslandContact {
   double moved_{};        ///< Bound of the relative motion of any two nodes since the last search [length]
   double rounded_way_{};  ///< Bound of what rounding adds to a node's way in a step [length]
   bool enabled_{};
+  bool with_edges_{};
   bool searched_{};
   ContactReport report_;
 };

@@ -41,11 +41,11 @@ void NodeWatch::look(Index node, std::span<const Index> candidates, std::span<co
     measure();
     decide_sides(memory);
   }
-  for (const Watched& w : watched_) {
-    remembered.push_back({node_, w.element, static_cast<std::int8_t>(w.side)});
-  }
   leave_one_of_smooth_neighbours();
-  push(active);
+  push(memory, active);
+  for (const Watched& w : watched_) {
+    remembered.push_back({node_, w.element, static_cast<std::int8_t>(w.side), w.drag});
+  }
 }
 
 /// The pairs as they were left: when nothing has moved since, they push as they did.
@@ -55,6 +55,7 @@ void NodeWatch::recall(std::span<const model::ContactSide> memory) {
     if (now_.has(model_, known.element)) {
       watched_.push_back(measured(known.element));
       watched_.back().side = known.side;
+      watched_.back().drag = known.drag;
     }
   }
 }
@@ -175,15 +176,20 @@ int NodeWatch::inherited_side(Index element) const {
   return side;
 }
 
-/// Whether the node was behind the element before this step, or may have come through it in the step. Otherwise it has
-/// gone round an edge: the element was remembered for the sake of a closer neighbour.
-bool NodeWatch::could_come_through(const Watched& w, int home) {
+/// How far the node has come in this step against the closest point of the element [length].
+Vec3d NodeWatch::way_of(const Watched& w) const {
   const auto& t = model_.triangle[at(w.element)];
   Vec3d way = point_ - before_(node_);
   for (std::size_t a = 0; a < 3; ++a) {
     way -= w.closest.weight[a] * (now_(t[a]) - before_(t[a]));
   }
-  if (w.distance <= 2.0 * norm(way)) {
+  return way;
+}
+
+/// Whether the node was behind the element before this step, or may have come through it in the step. Otherwise it has
+/// gone round an edge: the element was remembered for the sake of a closer neighbour.
+bool NodeWatch::could_come_through(const Watched& w, int home) {
+  if (w.distance <= 2.0 * norm(way_of(w))) {
     return true;
   }
   const auto closest = closest_on(model_, before_, w.element, before_(node_));
@@ -324,8 +330,10 @@ double NodeWatch::stiffness(const Watched& w) const {
   return 1.0 / compliance;
 }
 
-void NodeWatch::push(std::vector<ActivePair>& active) const {
-  for (const Watched& w : watched_) {
+void NodeWatch::push(std::span<const model::ContactSide> memory, std::vector<ActivePair>& active) {
+  const bool drags = drag_law_.acts() && !still_;
+  handed_on_.assign(drags ? memory.size() : 0, 0);
+  for (Watched& w : watched_) {
     if (!w.acts) {
       continue;
     }
@@ -340,10 +348,82 @@ void NodeWatch::push(std::vector<ActivePair>& active) const {
     pair.node = node_;
     pair.element = w.element;
     pair.weight = w.closest.weight;
-    pair.force = (pair.stiffness * depth) * direction(w);
+    const Vec3d normal = direction(w);
+    pair.force = (pair.stiffness * depth) * normal;
     pair.energy = 0.5 * pair.stiffness * depth * depth;
     pair.depth = distance > 0.0 ? depth / distance : HUGE_VAL;
+    if (drags) {
+      drag(w, memory, pair);
+    } else if (drag_law_.acts()) {
+      pair.force += w.drag;
+      pair.energy += physics::stored_energy(w.drag, normal, pair.stiffness);
+    }
     active.push_back(pair);
+  }
+  if (drags) {
+    part(memory, active);
+  }
+}
+
+/// The drag of the step before that goes on at an element: its own, or that of an element next to it, which the node
+/// has left.
+const model::ContactSide* NodeWatch::drag_before(Index element, std::span<const model::ContactSide> memory) const {
+  const model::ContactSide* own = find(memory, element);
+  if (own != nullptr && own->drag != Vec3d{}) {
+    return own;
+  }
+  const auto still_acts = [this](Index other) {
+    return std::any_of(watched_.begin(), watched_.end(),
+                       [other](const Watched& w) { return w.element == other && w.acts; });
+  };
+  for (std::size_t i = 0; i < memory.size(); ++i) {
+    if (handed_on_[i] == 0 && memory[i].drag != Vec3d{} && share_corner(memory[i].element, element) &&
+        !still_acts(memory[i].element)) {
+      return &memory[i];
+    }
+  }
+  return nullptr;
+}
+
+void NodeWatch::drag(Watched& w, std::span<const model::ContactSide> memory, ActivePair& pair) {
+  const model::ContactSide* known = drag_before(w.element, memory);
+  if (known != nullptr) {
+    handed_on_[static_cast<std::size_t>(known - memory.data())] = 1;
+  }
+  const auto inverse_mass = [this](Index n) {
+    return model_.bodies[at(model_.node_body[at(n)])].barrier ? 0.0 : 1.0 / model_.mass[at(n)];
+  };
+  physics::DragPair moving;
+  moving.normal = direction(w);
+  moving.normal_force = dot(pair.force, moving.normal);
+  moving.stiffness = pair.stiffness;
+  moving.inverse_mass = inverse_mass(node_);
+  const auto& t = model_.triangle[at(w.element)];
+  for (std::size_t a = 0; a < 3; ++a) {
+    moving.inverse_mass += w.closest.weight[a] * inverse_mass(t[a]);
+  }
+  moving.way = way_of(w);
+  moving.dt = before_.back - now_.back;
+  const physics::Drag drag = physics::drag_of(drag_law_, moving, known != nullptr ? known->drag : Vec3d{});
+  w.drag = drag.force;
+  pair.force += drag.force;
+  pair.energy += drag.stored;
+  pair.dissipated = drag.dissipated;
+}
+
+/// What pairs that push no more had stored is lost.
+void NodeWatch::part(std::span<const model::ContactSide> memory, std::vector<ActivePair>& active) {
+  for (std::size_t i = 0; i < memory.size(); ++i) {
+    if (handed_on_[i] != 0 || memory[i].drag == Vec3d{}) {
+      continue;
+    }
+    const Watched w = measured(memory[i].element);
+    ActivePair parted;
+    parted.node = node_;
+    parted.element = w.element;
+    parted.dissipated =
+        physics::stored_energy(memory[i].drag, direction(w), stiffness(w)) - 0.5 * dot(memory[i].drag, way_of(w));
+    active.push_back(parted);
   }
 }
 

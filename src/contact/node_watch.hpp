@@ -14,10 +14,11 @@ struct ActivePair {
   Index node{};
   Index element{};
   std::array<double, 3> weight{};
-  Vec3d force;         ///< On the node [force]
-  double energy{};     ///< 1/2 k g^2 [force*length]
-  double stiffness{};  ///< [force/length]
-  double depth{};      ///< Penetration over contact distance [-]
+  Vec3d force;          ///< On the node [force]
+  double energy{};      ///< 1/2 k g^2, and that of sticking [force*length]
+  double dissipated{};  ///< In this step, by friction and damping [force*length]
+  double stiffness{};   ///< [force/length]; 0 where a pair has parted and only leaves its energy of sticking
+  double depth{};       ///< Penetration over contact distance [-]
 };
 
 /// Watches one node at a time against the triangles near it: remembers on which side of each it stands, decides which
@@ -37,6 +38,7 @@ class NodeWatch {
       : model_(model),
         now_(now),
         before_(before),
+        drag_law_(drag_law_of(model)),
         normals_(model, now),
         normals_before_(model, before),
         still_(before.back == now.back) {}
@@ -57,6 +59,7 @@ class NodeWatch {
     bool rim{};              ///< The closest point lies on the rim of an open surface
     bool acts{};             ///< No element that shares the feature is closer
     Index closer{no_index};  ///< The closest of those, when it does not act
+    Vec3d drag;              ///< Friction and damping on the node [force]
 
     /// Whether a node that belongs on `home` has come through here. Off the rim of an open surface and off the tip of a
     /// sharp fold there is no other side to come from.
@@ -69,7 +72,11 @@ class NodeWatch {
   void measure();
   void decide_sides(std::span<const model::ContactSide> memory);
   void leave_one_of_smooth_neighbours();
-  void push(std::vector<ActivePair>& active) const;
+  void push(std::span<const model::ContactSide> memory, std::vector<ActivePair>& active);
+  void drag(Watched& watched, std::span<const model::ContactSide> memory, ActivePair& pair);
+  [[nodiscard]] const model::ContactSide* drag_before(Index element, std::span<const model::ContactSide> memory) const;
+  void part(std::span<const model::ContactSide> memory, std::vector<ActivePair>& active);
+  [[nodiscard]] Vec3d way_of(const Watched& watched) const;
 
   [[nodiscard]] double depth_limit(Index element) const;
   [[nodiscard]] Watched measured(Index element);
@@ -84,6 +91,7 @@ class NodeWatch {
   const model::Model& model_;
   Positions now_;
   Positions before_;
+  physics::DragLaw drag_law_;
   Normals normals_;
   Normals normals_before_;
   bool still_{};
@@ -94,6 +102,7 @@ class NodeWatch {
   std::vector<model::ContactSide> through_;  ///< Of those remembered, the ones that the node has come through
   std::vector<Watched> followed_;            ///< Those remembered, as they are measured now
   std::vector<Watched> watched_;
+  std::vector<char> handed_on_;  ///< Of the pairs remembered, those whose drag goes on
 };
 
 }  // namespace fexp::contact

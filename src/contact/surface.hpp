@@ -6,6 +6,7 @@
 #include "model/model.hpp"
 #include "model/state.hpp"
 #include "physics/closest_point.hpp"
+#include "physics/drag.hpp"
 
 namespace fexp::contact {
 
@@ -117,6 +118,18 @@ struct View {
 
 [[nodiscard]] inline Index body_of_element(const model::Model& model, Index element) noexcept {
   return model.blocks[at(model.element_block[at(element)])].body;
+}
+
+/// Friction and damping as the deck sets them.
+[[nodiscard]] inline physics::DragLaw drag_law_of(const model::Model& model) noexcept {
+  return {model.contact.friction, model.contact.damping};
+}
+
+/// The ends of an edge, from corner a to corner a + 1.
+[[nodiscard]] inline std::array<Index, 2> ends_of(const model::Model& model, Index edge) noexcept {
+  const auto& t = model.triangle[at(edge / 3)];
+  const auto a = static_cast<std::size_t>(edge % 3);
+  return {t[a], t[a == 2 ? 0 : a + 1]};
 }
 
 /// Largest half thickness at the element's corners [length].

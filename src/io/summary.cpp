@@ -34,8 +34,8 @@ ordered_json run_part(const Summary& s) {
 }
 
 ordered_json energies_part(const Summary::Energies& e) {
-  return {{"kinetic", e.kinetic},   {"internal", e.internal}, {"contact", e.contact}, {"barrier", e.barrier},
-          {"external", e.external}, {"damping", e.damping},   {"balance", e.balance}};
+  return {{"kinetic", e.kinetic},   {"internal", e.internal}, {"contact", e.contact},   {"barrier", e.barrier},
+          {"external", e.external}, {"damping", e.damping},   {"friction", e.friction}, {"balance", e.balance}};
 }
 
 ordered_json fault_part(const Summary::FaultPlace& f) {

@@ -40,6 +40,7 @@ struct Summary {
     double barrier{};
     double external{};
     double damping{};
+    double friction{};
     double balance{};
   } energies;
 

@@ -340,6 +340,9 @@ struct RigidPlane {
 struct ContactSettings {
   bool enabled{true};
   bool self{true};            ///< Bodies touch themselves.
+  bool edges{true};           ///< Edges touch edges.
+  double friction{0.0};       ///< Coulomb's coefficient [-]
+  double damping{0.0};        ///< Normal damping, as a part of the critical one of a pair [-]
   double penalty_scale{1.0};  ///< Factor on the stiffness that mass and first critical step give [-]
   double stiffness{-1.0};     ///< Penalty stiffness per pair [force/length]; negative: from the first critical step.
   std::vector<std::array<std::string, 2>> exclude;  ///< Pairs of bodies that do not touch; twice the same: itself.
@@ -348,6 +351,10 @@ struct ContactSettings {
   static constexpr auto fields = std::tuple{
       Field{"enabled", "-", "Contact between all bodies.", &ContactSettings::enabled},
       Field{"self", "-", "Contact of each body with itself.", &ContactSettings::self},
+      Field{"edges", "-", "Contact of edges with edges, besides that of nodes with elements.", &ContactSettings::edges},
+      Field{"friction", "-", "Coulomb's coefficient of friction.", &ContactSettings::friction, non_negative},
+      Field{"damping", "-", "Damping of the normal motion in contact, as a part of the critical damping of a pair.",
+            &ContactSettings::damping, Range{0.0, 1.0, true, true, ">= 0 and <= 1"}},
       Field{"penalty_scale", "-", "Factor on the penalty stiffness that mass and first critical step give.",
             &ContactSettings::penalty_scale, positive},
       Field{"stiffness", "force/length",

@@ -2,6 +2,7 @@
 #include "model/state.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstring>
@@ -48,11 +49,12 @@ class Reader {
 
 // Records of doubles alone have no padding and are copied whole.
 static_assert(sizeof(NodeMotion) == 9 * sizeof(double) && sizeof(NodeAcceleration) == 6 * sizeof(double));
-static_assert(sizeof(BodyLedger) == 10 * sizeof(double));
+static_assert(sizeof(BodyLedger) == 11 * sizeof(double));
 
 std::size_t row_offset(Index block, Index row) { return (at(block) * element_rows + at(row)) * at(block_lanes); }
 
-constexpr std::size_t side_bytes = 2 * sizeof(Index) + sizeof(std::int8_t);
+/// Of a remembered side of either kind.
+constexpr std::size_t side_bytes = 2 * sizeof(Index) + sizeof(std::int8_t) + sizeof(Vec3d);
 
 Index layer_rows(const Model& model, const ElementBlock& block) {
   return block.layer_row == no_index ? 0 : model.sections[at(block.section)].layer_rows();
@@ -72,7 +74,7 @@ void for_each_row(const Model& model, const Body& body, SomeState& state, const 
   }
 }
 
-/// Bytes in front of the number of sides.
+/// Bytes in front of the numbers of sides.
 std::size_t bytes_before_sides(const Model& model, const Body& body) {
   std::size_t numbers = 0;
   for (Index b = body.blocks.begin; b < body.blocks.end; ++b) {
@@ -82,28 +84,72 @@ std::size_t bytes_before_sides(const Model& model, const Body& body) {
   return at(body.nodes.size()) * (sizeof(NodeMotion) + sizeof(NodeAcceleration)) + numbers * sizeof(double);
 }
 
+/// `sides`: of both kinds together.
 std::size_t bytes_of_body(const Model& model, const Body& body, std::size_t sides) {
-  return bytes_before_sides(model, body) + sizeof(std::int64_t) + sides * side_bytes + sizeof(BodyLedger);
+  return bytes_before_sides(model, body) + 2 * sizeof(std::int64_t) + sides * side_bytes + sizeof(BodyLedger);
+}
+
+std::pair<Index, Index> pair_of(const ContactSide& s) { return {s.node, s.element}; }
+std::pair<Index, Index> pair_of(const EdgeSide& s) { return {s.first, s.second}; }
+
+bool is_barrier_of_element(const Model& model, Index element) {
+  return model.bodies[at(model.blocks[at(model.element_block[at(element)])].body)].barrier;
 }
 
 /// True when the side is one that the body can have: of its own node and any element, or of a barrier's node and its
 /// own element.
 bool is_side_of(const Model& model, const Body& body, const ContactSide& s) {
-  const bool known = s.node >= 0 && s.node < model.node_count() && s.element >= 0 &&
-                     s.element < model.element_count() && (s.side == 1 || s.side == -1);
-  return known && (body.nodes.contains(s.node) ||
-                   (body.elements.contains(s.element) && model.bodies[at(model.node_body[at(s.node)])].barrier));
+  return s.node >= 0 && s.node < model.node_count() && s.element >= 0 && s.element < model.element_count() &&
+         (body.nodes.contains(s.node) ||
+          (body.elements.contains(s.element) && model.bodies[at(model.node_body[at(s.node)])].barrier));
 }
 
-bool are_sides_of(const Model& model, const Body& body, const std::vector<ContactSide>& sides) {
+/// Likewise of two edges.
+bool is_side_of(const Model& model, const Body& body, const EdgeSide& s) {
+  const Index edges = 3 * model.element_count();
+  return s.first >= 0 && s.first < s.second && s.second < edges &&
+         (body.elements.contains(s.first / 3) ||
+          (body.elements.contains(s.second / 3) && is_barrier_of_element(model, s.first / 3)));
+}
+
+template <class Side>
+bool are_sides_of(const Model& model, const Body& body, const std::vector<Side>& sides) {
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    const ContactSide& s = sides[i];
-    const bool known = is_side_of(model, body, s);
-    if (!known || (i > 0 && std::pair{sides[i - 1].node, sides[i - 1].element} >= std::pair{s.node, s.element})) {
+    const Side& s = sides[i];
+    const bool known = (s.side == 1 || s.side == -1) && is_side_of(model, body, s);
+    if (!known || (i > 0 && pair_of(sides[i - 1]) >= pair_of(s))) {
       return false;
     }
   }
   return true;
+}
+
+template <class Side>
+void write_sides(const std::vector<Side>& sides, Writer& writer) {
+  for (const Side& side : sides) {
+    const std::pair<Index, Index> pair = pair_of(side);
+    writer.write(&pair.first, 1);
+    writer.write(&pair.second, 1);
+    writer.write(&side.side, 1);
+    writer.write(&side.drag, 1);
+  }
+}
+
+template <class Side>
+std::vector<Side> read_sides(std::size_t count, Reader& reader) {
+  std::vector<Side> sides;
+  sides.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Index first = 0, second = 0;
+    std::int8_t side = 0;
+    Vec3d drag;
+    reader.read(&first, 1);
+    reader.read(&second, 1);
+    reader.read(&side, 1);
+    reader.read(&drag, 1);
+    sides.push_back({first, second, side, drag});
+  }
+  return sides;
 }
 
 }  // namespace
@@ -148,6 +194,7 @@ State initial_state(const Model& model) {
     }
   }
   state.sides.resize(model.bodies.size());
+  state.edge_sides.resize(model.bodies.size());
   state.ledger.resize(model.bodies.size());
   return state;
 }
@@ -169,28 +216,29 @@ void copy_body(const Model& model, const State& from, Index body, State& to) {
     }
   }
   to.sides[at(body)] = from.sides[at(body)];
+  to.edge_sides[at(body)] = from.edge_sides[at(body)];
   to.ledger[at(body)] = from.ledger[at(body)];
 }
 
 // Order: motion of the nodes (x, v, omega), their accelerations (a, alpha), rows of the elements and of their layers
-// block by block (used lanes only), the number of sides (64 bits) and the sides (node, element, side: 32, 32 and 8
-// bits), the ledger. All numbers are little-endian and stand side by side.
+// block by block (used lanes only), the numbers of sides of nodes and of edges (64 bits each), the sides of nodes
+// (node, element, side: 32, 32 and 8 bits, drag), those of edges (first, second, side, drag), the ledger. All numbers
+// are little-endian and stand side by side.
 void append_body_bytes(const Model& model, const State& state, Index body, std::vector<std::byte>& bytes) {
   const Body& owner = model.bodies[at(body)];
   const std::vector<ContactSide>& sides = state.sides[at(body)];
+  const std::vector<EdgeSide>& edge_sides = state.edge_sides[at(body)];
   const std::size_t before = bytes.size();
-  bytes.resize(before + bytes_of_body(model, owner, sides.size()));
+  bytes.resize(before + bytes_of_body(model, owner, sides.size() + edge_sides.size()));
   Writer writer(bytes.data() + before);
   writer.write(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));
   writer.write(state.acceleration.data() + owner.nodes.begin, at(owner.nodes.size()));
   for_each_row(model, owner, state, [&](const double* row, std::size_t count) { writer.write(row, count); });
-  const auto count = static_cast<std::int64_t>(sides.size());
-  writer.write(&count, 1);
-  for (const ContactSide& side : sides) {
-    writer.write(&side.node, 1);
-    writer.write(&side.element, 1);
-    writer.write(&side.side, 1);
-  }
+  const std::array<std::int64_t, 2> counts{static_cast<std::int64_t>(sides.size()),
+                                           static_cast<std::int64_t>(edge_sides.size())};
+  writer.write(counts.data(), counts.size());
+  write_sides(sides, writer);
+  write_sides(edge_sides, writer);
   writer.write(&state.ledger[at(body)], 1);
 }
 
@@ -201,24 +249,22 @@ bool read_body_bytes(const Model& model, std::span<const std::byte> bytes, Index
   if (bytes.size() < least) {
     return false;
   }
-  std::int64_t count = 0;
-  Reader(bytes.data() + front).read(&count, 1);
+  std::array<std::int64_t, 2> counts{};
+  Reader(bytes.data() + front).read(counts.data(), counts.size());
   const std::size_t room = (bytes.size() - least) / side_bytes;
-  if (count < 0 || static_cast<std::uint64_t>(count) > room ||
-      bytes.size() != least + static_cast<std::size_t>(count) * side_bytes) {
+  const auto fits = [room](std::int64_t count) { return count >= 0 && static_cast<std::uint64_t>(count) <= room; };
+  if (!fits(counts[0]) || !fits(counts[1]) ||
+      bytes.size() != least + static_cast<std::size_t>(counts[0] + counts[1]) * side_bytes) {
     return false;
   }
-  Reader rear(bytes.data() + front + sizeof(count));
-  std::vector<ContactSide> sides(static_cast<std::size_t>(count));
-  for (ContactSide& side : sides) {
-    rear.read(&side.node, 1);
-    rear.read(&side.element, 1);
-    rear.read(&side.side, 1);
-  }
-  if (!are_sides_of(model, owner, sides)) {
+  Reader rear(bytes.data() + front + sizeof(counts));
+  std::vector<ContactSide> sides = read_sides<ContactSide>(static_cast<std::size_t>(counts[0]), rear);
+  std::vector<EdgeSide> edge_sides = read_sides<EdgeSide>(static_cast<std::size_t>(counts[1]), rear);
+  if (!are_sides_of(model, owner, sides) || !are_sides_of(model, owner, edge_sides)) {
     return false;
   }
   state.sides[at(body)] = std::move(sides);
+  state.edge_sides[at(body)] = std::move(edge_sides);
   rear.read(&state.ledger[at(body)], 1);
   Reader reader(bytes.data());
   reader.read(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));

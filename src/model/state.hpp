@@ -48,31 +48,47 @@ struct ContactSide {
   Index node{};
   Index element{};
   std::int8_t side{};
+  Vec3d drag{};  ///< Friction and damping on the node at the last step [force]
 
   friend bool operator==(const ContactSide&, const ContactSide&) = default;
 };
 
+/// Side on which one edge belongs of another one, remembered while they cross near each other: +1 where the first edge
+/// x the second edge points from the first to the second, -1 on the other side. An edge's number is 3 x element + its
+/// number there, of the lower of the elements that share it; it leads from corner a to corner a + 1.
+struct EdgeSide {
+  Index first{};
+  Index second{};  ///< The higher number
+  std::int8_t side{};
+  Vec3d drag{};  ///< On the second edge [force]
+
+  friend bool operator==(const EdgeSide&, const EdgeSide&) = default;
+};
+
 /// Quantities of one body that are integrated over the run or belong to the last evaluated forces.
 struct BodyLedger {
-  double external_work{};            ///< Loads, gravity and prescribed motion [force*length], integrated
-  double damping_work{};             ///< Work taken out by damping (>= 0) [force*length], integrated
-  double contact_energy{};           ///< Potential of the pairs whose node is this body's [force*length]
-  double barrier_energy{};           ///< Potential of rigid planes [force*length]
-  Vec3d external_impulse{};          ///< Loads, planes, damping and constraints [force*time], integrated
+  double external_work{};        ///< Loads, gravity and prescribed motion [force*length], integrated
+  double damping_work{};         ///< Work taken out by damping (>= 0) [force*length], integrated
+  double contact_energy{};       ///< Potential of the pairs that are booked to this body [force*length]
+  double contact_dissipation{};  ///< What friction and damping of contact have taken (>= 0) [force*length], integrated
+  double barrier_energy{};       ///< Potential of rigid planes [force*length]
+  Vec3d external_impulse{};      ///< Loads, planes, damping and constraints [force*time], integrated
   Vec3d external_angular_impulse{};  ///< The same about the origin [force*length*time], integrated
 };
 
 /// The state at a step boundary: all that a restart or another machine needs.
 struct State {
   std::int64_t step{};
-  double time{};                                 // [time]
-  AlignedVector<NodeMotion> motion;              // [nodes]
-  AlignedVector<NodeAcceleration> acceleration;  // [nodes]
-  AlignedVector<double> history;                 // [blocks][element_rows][block_lanes]
-  AlignedVector<double> layers;                  // [layered blocks][physics::layer_rows][block_lanes]
-  std::vector<std::vector<ContactSide>> sides;   // [bodies]: sorted by (node, element); the body's nodes, and
-                                                 // barriers' nodes with its elements
-  std::vector<BodyLedger> ledger;                // [bodies]
+  double time{};                                  // [time]
+  AlignedVector<NodeMotion> motion;               // [nodes]
+  AlignedVector<NodeAcceleration> acceleration;   // [nodes]
+  AlignedVector<double> history;                  // [blocks][element_rows][block_lanes]
+  AlignedVector<double> layers;                   // [layered blocks][physics::layer_rows][block_lanes]
+  std::vector<std::vector<ContactSide>> sides;    // [bodies]: sorted by (node, element); the body's nodes, and
+                                                  // barriers' nodes with its elements
+  std::vector<std::vector<EdgeSide>> edge_sides;  // [bodies]: sorted by (first, second); the first edge is the body's,
+                                                  // or the second where the first is a barrier's
+  std::vector<BodyLedger> ledger;  // [bodies]
 };
 
 /// State at time zero: reference positions, initial velocities as far as fixed nodes and planes of symmetry allow, no

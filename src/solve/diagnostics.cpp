@@ -62,6 +62,7 @@ Energies& Energies::operator+=(const Energies& other) noexcept {
   external += other.external;
   damping += other.damping;
   dissipated += other.dissipated;
+  friction += other.friction;
   return *this;
 }
 
@@ -98,6 +99,7 @@ Diagnostics body_diagnostics(const model::Model& model, const model::State& stat
   }
   sum.energies.contact = ledger.contact_energy;
   sum.energies.barrier = ledger.barrier_energy;
+  sum.energies.friction = ledger.contact_dissipation;
   sum.energies.external = ledger.external_work;
   sum.energies.damping = ledger.damping_work;
   sum.momenta.external_impulse = ledger.external_impulse;

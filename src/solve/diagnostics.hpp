@@ -17,9 +17,12 @@ struct Energies {
   double external{};    ///< Work put in by loads, gravity and prescribed motion
   double damping{};     ///< Work taken out by damping
   double dissipated{};  ///< Of the internal energy what plastic flow has taken
+  double friction{};    ///< Taken by friction and damping of contact
 
   /// What the body has now, less what was put in: constant in exact arithmetic and time.
-  [[nodiscard]] double balance() const noexcept { return kinetic + internal + contact + barrier + damping - external; }
+  [[nodiscard]] double balance() const noexcept {
+    return kinetic + internal + contact + barrier + damping + friction - external;
+  }
   Energies& operator+=(const Energies& other) noexcept;
 };
 

@@ -302,7 +302,9 @@ void IslandSolver::contact_forces(const Step& step) {
       contact_.evaluate(step.model, step.state, step.dt, step.workspace.contact, step.workspace.body_contact.data());
   contact_written_ = contact_report_.active_pairs > 0;
   for (const Index index : bodies_) {
-    step.state.ledger[at(index)].contact_energy = step.workspace.body_contact[at(index)].energy;
+    const contact::BodyContact& contact = step.workspace.body_contact[at(index)];
+    step.state.ledger[at(index)].contact_energy = contact.energy;
+    step.state.ledger[at(index)].contact_dissipation += contact.dissipated;
   }
 }
 

@@ -61,7 +61,7 @@ class Histories(program.Case):
             self.assertEqual(header[:2], ["step", "time [ms]"], name)
         self.assertEqual(headers["energies"][2:],
                          [f"{name} [kN*mm]" for name in
-                          ("kinetic", "internal", "contact", "barrier", "external", "damping", "dissipated",
+                          ("kinetic", "internal", "contact", "barrier", "external", "damping", "friction", "dissipated",
                            "balance")] +
                          ["relative_error"])
         self.assertEqual(headers["steps"][2:],
@@ -88,7 +88,7 @@ class Histories(program.Case):
         self.assertGreater(float(rows[-1]["barrier"]) + float(rows[-1]["internal"]), 0.0, "nothing has touched")
         self.assertLessEqual(max(float(row["relative_error"]) for row in rows), self.summary["energy_error"])
         for row in rows:
-            parts = sum(float(row[name]) for name in ("kinetic", "internal", "contact", "barrier", "damping"))
+            parts = sum(float(row[name]) for name in ("kinetic", "internal", "contact", "barrier", "damping", "friction"))
             self.assertAlmostEqual(parts - float(row["external"]), float(row["balance"]), delta=1e-12)
         self.assertEqual(self.summary["energies"]["kinetic"], float(rows[-1]["kinetic"]))
         searches = sum(int(row["searches"]) for row in self.table("here/steps.csv")[0])

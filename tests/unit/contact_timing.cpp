@@ -60,6 +60,7 @@ TEST(contact_timing, a_search_before_every_step_from_the_stored_sides_changes_no
       twin.island.store_sides(model, one);
       seldom.island.store_sides(model, two);
       ASSERT_EQ(one.sides, two.sides) << "step " << i;
+      ASSERT_EQ(one.edge_sides, two.edge_sides) << "step " << i;
       ASSERT_EQ(report.active_pairs, report_twin.active_pairs);
       ASSERT_EQ(report.max_stiffness_over_mass, report_twin.max_stiffness_over_mass);
       ASSERT_EQ(seldom.nodes.force, twin.nodes.force) << "step " << i;
@@ -86,10 +87,12 @@ TEST(contact_timing, looking_again_without_a_step_gives_the_same_sides_forces_an
       model::State again = run.state;
       run.store();
       again.sides = run.state.sides;
+      again.edge_sides = run.state.edge_sides;
       test::Contact contact(model, again);
       contact.evaluate(model, again, 0.0);
       contact.island.store_sides(model, again);
       ASSERT_EQ(again.sides, run.state.sides) << "step " << i;
+      ASSERT_EQ(again.edge_sides, run.state.edge_sides) << "step " << i;
       ASSERT_EQ(contact.nodes.force, run.workspace.contact.force) << "step " << i;
       for (std::size_t b = 0; b < model.bodies.size(); ++b) {
         ASSERT_EQ(contact.bodies[b].energy, run.workspace.body_contact[b].energy);

@@ -52,11 +52,16 @@ State random_state(const Model& model, unsigned seed) {
   fill(numbers(state.acceleration), 6 * state.acceleration.size());
   fill(state.history.data(), state.history.size());
   fill(state.layers.data(), state.layers.size());
-  fill(numbers(state.ledger), 10 * state.ledger.size());
+  fill(numbers(state.ledger), 11 * state.ledger.size());
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     for (Index i = 0; i < 4; ++i) {
-      state.sides[b].push_back({model.bodies[b].nodes.begin + i, 3 * i, static_cast<std::int8_t>(i % 2 == 0 ? 1 : -1)});
+      state.sides[b].push_back({model.bodies[b].nodes.begin + i,
+                                3 * i,
+                                static_cast<std::int8_t>(i % 2 == 0 ? 1 : -1),
+                                {number(random), number(random), number(random)}});
     }
+    const Index edge = 3 * model.bodies[b].elements.begin, last = 3 * model.element_count() - 1;
+    state.edge_sides[b] = {{edge, edge + 5, 1, {number(random), 0.0, 1.0}}, {edge, last, -1, {}}};
   }
   return state;
 }
@@ -114,6 +119,7 @@ TEST(state_bytes, what_is_written_is_read_back_bit_for_bit_and_only_into_its_bod
   EXPECT_TRUE(std::signbit(to.motion[node].velocity.x));
   EXPECT_TRUE(std::isnan(to.acceleration[node].linear.y));
   EXPECT_EQ(to.sides[1], from.sides[1]);
+  EXPECT_EQ(to.edge_sides[1], from.edge_sides[1]);
   EXPECT_EQ(body_hash(m, to, 1), body_hash(m, from, 1));
 }
 
@@ -127,7 +133,7 @@ TEST(state_bytes, the_layout_is_the_documented_one) {
     return value;
   };
   const Body& body = m.bodies[1];
-  ASSERT_EQ(bytes.size(), 16U * 15U * 8U + 18U * 12U * 8U + 8U + 4U * 9U + 80U);
+  ASSERT_EQ(bytes.size(), 16U * 15U * 8U + 18U * 12U * 8U + 16U + 6U * 33U + 88U);
   EXPECT_EQ(number_at(0), s.motion[at(body.nodes.begin)].position.x);
   EXPECT_EQ(number_at(72), s.motion[at(body.nodes.begin + 1)].position.x);
   EXPECT_EQ(number_at(16 * 72), s.acceleration[at(body.nodes.begin)].linear.x);
@@ -138,10 +144,13 @@ TEST(state_bytes, the_layout_is_the_documented_one) {
   EXPECT_EQ(number_at(rows + 16 * 12 * 8 + 16), element_value(m, s, body.elements.begin + 16, row_nyy));
   const std::size_t sides = rows + 18U * 12U * 8U;
   EXPECT_EQ(std::to_integer<int>(bytes[sides]), 4);
-  EXPECT_EQ(std::to_integer<int>(bytes[sides + 8]), body.nodes.begin);
-  EXPECT_EQ(std::to_integer<int>(bytes[sides + 8 + 9 + 4]), 3);
-  EXPECT_EQ(std::to_integer<int>(bytes[sides + 8 + 9 + 8]), 0xFF);
-  EXPECT_EQ(number_at(bytes.size() - 80), s.ledger[1].external_work);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 8]), 2);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 16]), body.nodes.begin);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 16 + 33 + 4]), 3);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 16 + 33 + 8]), 0xFF);
+  EXPECT_EQ(number_at(sides + 16 + 33 + 9 + 8), s.sides[1][1].drag.y);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 16 + 4 * 33 + 8]), 1);
+  EXPECT_EQ(number_at(bytes.size() - 88), s.ledger[1].external_work);
 }
 
 TEST(state_bytes, padding_lanes_do_not_reach_the_hash) {
@@ -187,7 +196,10 @@ TEST(state_bytes, every_used_number_reaches_the_hash) {
   EXPECT_TRUE(changed([](State& o) { ++o.step; }));
   EXPECT_TRUE(changed([](State& o) { o.time = 1.0; }));
   EXPECT_TRUE(changed([](State& o) { o.sides[1][2].side = -1; }));
+  EXPECT_TRUE(changed([](State& o) { o.sides[1][2].drag.z = 9.0; }));
   EXPECT_TRUE(changed([](State& o) { o.sides[0].pop_back(); }));
+  EXPECT_TRUE(changed([](State& o) { o.edge_sides[1][0].side = -1; }));
+  EXPECT_TRUE(changed([](State& o) { o.edge_sides[0].pop_back(); }));
   EXPECT_TRUE(changed([](State& o) { std::swap(o.ledger[0], o.ledger[1]); }));
 }
 
@@ -231,6 +243,20 @@ TEST(state_bytes, sides_that_the_body_cannot_have_are_refused) {
     bad.sides[1] = sides;
     EXPECT_FALSE(read_body_bytes(m, bytes_of(m, bad, 1), 1, s));
   }
+  const Index edge = 3 * m.bodies[1].elements.begin, count = 3 * m.element_count();
+  for (const std::vector<EdgeSide>& sides :
+       std::vector<std::vector<EdgeSide>>{{{edge - 1, edge, 1}},                          // another body's edge
+                                          {{edge, count, 1}},                             // no edge
+                                          {{-1, edge, 1}},                                // no edge
+                                          {{edge, edge, 1}},                              // one edge
+                                          {{edge + 1, edge, 1}},                          // the higher number first
+                                          {{edge, edge + 1, 0}},                          // no side
+                                          {{edge, edge + 5, 1}, {edge, edge + 4, 1}},     // out of order
+                                          {{edge, edge + 5, 1}, {edge, edge + 5, 1}}}) {  // twice
+    State bad = good;
+    bad.edge_sides[1] = sides;
+    EXPECT_FALSE(read_body_bytes(m, bytes_of(m, bad, 1), 1, s));
+  }
   EXPECT_EQ(state_hash(m, s), before);
 }
 
@@ -251,7 +277,7 @@ TEST(state_bytes, layers_follow_the_rows_of_their_block) {
   const State s = random_state(m, 11);
   const auto bytes = bytes_of(m, s, 1);
   const std::size_t nodes = 16U * 15U * 8U, rows = 12U + 11U;
-  ASSERT_EQ(bytes.size(), nodes + 18U * rows * 8U + 8U + 4U * 9U + 80U);
+  ASSERT_EQ(bytes.size(), nodes + 18U * rows * 8U + 16U + 6U * 33U + 88U);
   const auto number_at = [&](std::size_t offset) {
     double value;
     std::memcpy(&value, bytes.data() + offset, sizeof(value));

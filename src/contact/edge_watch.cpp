@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contact/edge_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fexp::contact {
+
+namespace {
+
+double limited(double a) noexcept { return a < 0.0 ? 0.0 : a > 1.0 ? 1.0 : a; }
+
+Vec3d between(const Vec3d& a, const Vec3d& b, double part) noexcept { return (1.0 - part) * a + part * b; }
+
+/// Adds a force on a point of the second edge and takes it from one of the first.
+void add_force(double at_first, double at_second, const Vec3d& force, std::array<Vec3d, 4>& ends) noexcept {
+  const Vec3d of_first = at_first * force, of_second = at_second * force;
+  ends[0] -= force - of_first;
+  ends[1] -= of_first;
+  ends[2] += force - of_second;
+  ends[3] += of_second;
+}
+
+}  // namespace
+
+EdgeWatch::Pair EdgeWatch::pair_at(const Positions& x, Index first, Index second) const {
+  const std::array<Index, 2> a = ends_of(model_, first), b = ends_of(model_, second);
+  Pair p;
+  p.first = first;
+  p.second = second;
+  p.node = {a[0], a[1], b[0], b[1]};
+  p.lines = physics::closest_on_lines(x(a[0]), x(a[1]), x(b[0]), x(b[1]));
+  constexpr double least = physics::feature_tolerance, most = 1.0 - physics::feature_tolerance;
+  p.inside = p.lines.sine2 > physics::parallel_sine2 && p.lines.first > least && p.lines.first < most &&
+             p.lines.second > least && p.lines.second < most;
+  return p;
+}
+
+/// Whether an element at the edge is left.
+bool EdgeWatch::is_there(Index edge) const {
+  if (now_.has(model_, edge / 3)) {
+    return true;
+  }
+  const Index other = model_.neighbour[at(edge / 3)][static_cast<std::size_t>(edge % 3)];
+  return other != no_index && now_.has(model_, other);
+}
+
+/// How far the second edge has come in this step against the first one where they are closest [length].
+Vec3d EdgeWatch::way_of(const Pair& p) const {
+  const auto way = [&](std::size_t end) { return now_(p.node[end]) - before_(p.node[end]); };
+  return between(way(2), way(3), p.lines.second) - between(way(0), way(1), p.lines.first);
+}
+
+/// A pair that is remembered stays on its side. A new one belongs where it was before the step if it has come through
+/// in this step.
+int EdgeWatch::side_of(const Pair& p, const model::EdgeSide* known) const {
+  if (known != nullptr) {
+    return known->side;
+  }
+  const Vec3d way = way_of(p);
+  if (p.lines.gap * p.lines.gap <= 4.0 * dot(way, way)) {
+    const Pair old = pair_at(before_, p.first, p.second);
+    if (old.inside) {
+      return old.side();
+    }
+  }
+  return p.side();
+}
+
+/// `corner`: the nodes that Sharpness::corner counts.
+physics::Sharpness EdgeWatch::sharpness_of(const Pair& p, int side, std::array<Index, 4>& corner) const {
+  physics::CrossingEdges edges;
+  for (std::size_t end = 0; end < 4; ++end) {
+    edges.end[end] = now_(p.node[end]);
+  }
+  for (std::size_t which = 0; which < 2; ++which) {
+    const Index edge = which == 0 ? p.first : p.second, own = edge / 3;
+    for (const Index element : {own, model_.neighbour[at(own)][static_cast<std::size_t>(edge % 3)]}) {
+      if (element == no_index || !now_.has(model_, element)) {
+        continue;
+      }
+      for (const Index n : model_.triangle[at(element)]) {
+        if (n != p.node[2 * which] && n != p.node[2 * which + 1]) {
+          const auto triangle = static_cast<std::size_t>(edges.triangles[which]);
+          corner[2 * which + triangle] = n;
+          edges.corner[which][triangle] = now_(n);
+        }
+      }
+      ++edges.triangles[which];
+    }
+  }
+  return physics::sharpness_of(edges, p.lines, side);
+}
+
+/// What the edges had between them in the reference configuration, as far as that may matter [length].
+double EdgeWatch::most_distance(const Pair& p) const {
+  const std::vector<Vec3d>& x = model_.reference_position;
+  const Vec3d &a0 = x[at(p.node[0])], &a1 = x[at(p.node[1])], &b0 = x[at(p.node[2])], &b1 = x[at(p.node[3])];
+  const Vec3d from = b0 - a0;
+  const double thickest = reach_of(p);
+  const double reach = thickest + norm(a1 - a0) + norm(b1 - b0);
+  return dot(from, from) > reach * reach ? thickest : std::sqrt(physics::edge_distance2(a0, a1, b0, b1));
+}
+
+EdgeWatch::Place EdgeWatch::place_at(const Pair& p, double first, double second, double most_distance) const {
+  Place place;
+  place.first = first;
+  place.second = second;
+  const std::array<double, 4> weight{1.0 - first, first, 1.0 - second, second};
+  for (std::size_t end = 0; end < 4; ++end) {
+    const std::size_t n = at(p.node[end]);
+    place.distance += weight[end] * model_.half_thickness[n];
+    // Barriers do not give way.
+    if (!model_.bodies[at(model_.node_body[n])].barrier) {
+      place.compliance += weight[end] / model_.contact_stiffness[n];
+      place.inverse_mass += weight[end] / model_.mass[n];
+    }
+  }
+  place.distance = most_distance < place.distance ? most_distance : place.distance;
+  return place;
+}
+
+/// Watch distance [length].
+double EdgeWatch::reach_of(const Pair& p) const { return edge_reach(model_, p.first) + edge_reach(model_, p.second); }
+
+double EdgeWatch::stiffness(const Place& place) const {
+  return model_.contact.stiffness >= 0.0 ? model_.contact.stiffness : 1.0 / place.compliance;
+}
+
+void EdgeWatch::look(Index first, std::span<const Index> second, std::span<const model::EdgeSide> memory,
+                     std::vector<model::EdgeSide>& remembered, std::vector<ActiveEdges>& active) const {
+  if (!is_there(first)) {
+    return;
+  }
+  // As they were left: when nothing has moved since, pairs push as they did.
+  auto candidate = still_ && !memory.empty() ? second.end() : second.begin();
+  auto known = memory.begin();
+  while (known != memory.end() || candidate != second.end()) {
+    const bool is_known = known != memory.end() && (candidate == second.end() || known->second <= *candidate);
+    const Index next = is_known ? known->second : *candidate;
+    if (is_there(next)) {
+      watch(first, next, is_known ? &*known : nullptr, remembered, active);
+    }
+    if (candidate != second.end() && *candidate == next) {
+      ++candidate;
+    }
+    if (is_known) {
+      ++known;
+    }
+  }
+}
+
+void EdgeWatch::watch(Index first, Index second, const model::EdgeSide* known, std::vector<model::EdgeSide>& remembered,
+                      std::vector<ActiveEdges>& active) const {
+  Pair p = pair_at(now_, first, second);
+  const bool near = p.inside && std::abs(p.lines.gap) < reach_of(p);
+  const Vec3d drag_before = known != nullptr ? known->drag : Vec3d{};
+  if (near) {
+    remembered.push_back({first, second, static_cast<std::int8_t>(side_of(p, known)), {}});
+    push(remembered.back(), p, drag_before, active);
+  }
+  // What a pair had stored that pushes no more is lost.
+  if (drag_before != Vec3d{} && !still_ && (!near || remembered.back().drag == Vec3d{})) {
+    p.lines.first = limited(p.lines.first);
+    p.lines.second = limited(p.lines.second);
+    ActiveEdges parted;
+    parted.first = first;
+    parted.second = second;
+    const Vec3d normal = p.lines.sine2 > 0.0 ? (1.0 / norm(p.lines.normal)) * p.lines.normal : Vec3d{};
+    const double stiff = stiffness(place_at(p, p.lines.first, p.lines.second, HUGE_VAL));
+    parted.dissipated = physics::stored_energy(drag_before, normal, stiff) - 0.5 * dot(drag_before, way_of(p));
+    active.push_back(parted);
+  }
+}
+
+/// Depth of edges at a height over each other, along the normal in which they belong, or of an end that is `distance`
+/// away from the other edge. Edges that are through each other are the deeper the farther they are, at first; then less
+/// and less, so that no energy is lost with a pair that is given up. An end counts as deep as they are, less by what it
+/// is farther away.
+EdgeWatch::Depth EdgeWatch::depth_at(double contact_distance, double distance, double height, double reach) {
+  if (!(height < 0.0)) {
+    return {contact_distance - distance, 0.0, 1.0};
+  }
+  const double beyond = -height, part = beyond / reach, left = 1.0 - part * part;
+  const double kept = left * left, slope = -4.0 * part * left / reach;
+  const double plain = contact_distance + 2.0 * beyond - distance;
+  return {plain * kept, -(2.0 * kept + plain * slope), kept};
+}
+
+void EdgeWatch::push(model::EdgeSide& known, const Pair& p, const Vec3d& drag_before,
+                     std::vector<ActiveEdges>& active) const {
+  const double most = most_distance(p), height = known.side * p.lines.gap, reach = reach_of(p);
+  const Place place = place_at(p, p.lines.first, p.lines.second, most);
+  const Depth depth = depth_at(place.distance, std::abs(height), height, reach);
+  if (!(depth.value > 0.0)) {
+    return;
+  }
+  std::array<Index, 4> corner{no_index, no_index, no_index, no_index};
+  const physics::Sharpness sharpness = sharpness_of(p, known.side, corner);
+  if (!(sharpness.part > 0.0)) {
+    return;
+  }
+  const Vec3d normal = (known.side / norm(p.lines.normal)) * p.lines.normal;
+  const double stiff = stiffness(place), part = sharpness.part;
+  ActiveEdges push;
+  push.first = p.first;
+  push.second = p.second;
+  push.at_first = place.first;
+  push.at_second = place.second;
+  push.energy = 0.5 * stiff * depth.value * depth.value;
+  // The distance grows with the height before the edges are through, and against it behind that.
+  const double by_height = depth.by_height + (height < 0.0 ? depth.by_nearness : -depth.by_nearness);
+  add_force(place.first, place.second, (-part * stiff * depth.value * by_height) * normal, push.force);
+  leave_to_ends(p, most, height, part * normal, push);
+  if (!(push.energy > 0.0)) {
+    return;
+  }
+  push.stiffness = part * stiff;
+  if (part < 1.0) {
+    double steepest = 0.0;
+    for (std::size_t end = 0; end < 4; ++end) {
+      push.force[end] -= push.energy * sharpness.end[end];
+      steepest = std::max(steepest, norm(sharpness.end[end]));
+    }
+    push.stiffness += 2.0 * stiff * depth.value * steepest;
+    if (sharpness.corner >= 0) {
+      push.corner = corner[static_cast<std::size_t>(sharpness.corner)];
+      push.corner_force = -push.energy * sharpness.by_corner;
+    }
+  }
+  push.energy *= part;
+  push.depth = place.distance > 0.0 ? (place.distance - height) / place.distance : HUGE_VAL;
+  if (drag_law_.acts()) {
+    drag(known, p, place, normal, part * stiff, drag_before, push);
+  }
+  active.push_back(push);
+}
+
+/// Takes off the energy, for a sharpness of 1, and the force of that end which pushes most against the other edge.
+/// `normal`: times the sharpness.
+void EdgeWatch::leave_to_ends(const Pair& p, double most_distance, double height, const Vec3d& normal,
+                              ActiveEdges& push) const {
+  const double part = norm(normal), reach = reach_of(p);
+  double most = 0.0;
+  Vec3d at_end, at_crossing;
+  Place at_most;
+  for (std::size_t end = 0; end < 4; ++end) {
+    const bool of_first = end < 2;
+    const std::size_t other = of_first ? 2 : 0;
+    const Vec3d point = now_(p.node[end]), begin = now_(p.node[other]);
+    const Vec3d along = now_(p.node[other + 1]) - begin, from = point - begin;
+    const double foot = limited(dot(from, along) / dot(along, along)), own = static_cast<double>(end % 2);
+    const Place place = of_first ? place_at(p, own, foot, most_distance) : place_at(p, foot, own, most_distance);
+    const Vec3d offset = from - foot * along;
+    const double distance = norm(offset);
+    const Depth depth = depth_at(place.distance, distance, height, reach);
+    if (!(depth.value > 0.0) || !(distance > 0.0)) {
+      continue;
+    }
+    const double stiff = stiffness(place), energy = 0.5 * stiff * depth.value * depth.value;
+    if (energy > most) {
+      most = energy;
+      at_most = place;
+      at_end = ((of_first ? part : -part) * stiff * depth.value * depth.by_nearness / distance) * offset;
+      at_crossing = (stiff * depth.value * depth.by_height) * normal;
+    }
+  }
+  if (most > 0.0) {
+    push.energy -= most;
+    add_force(at_most.first, at_most.second, at_end, push.force);
+    add_force(push.at_first, push.at_second, at_crossing, push.force);
+  }
+}
+
+void EdgeWatch::drag(model::EdgeSide& known, const Pair& p, const Place& place, const Vec3d& normal, double stiffness,
+                     const Vec3d& drag_before, ActiveEdges& push) const {
+  if (still_) {
+    known.drag = drag_before;
+    push.energy += physics::stored_energy(known.drag, normal, stiffness);
+  } else {
+    const double pressed = dot(push.force[2] + push.force[3], normal);
+    const physics::Drag drag = physics::drag_of(
+        drag_law_,
+        {normal, pressed > 0.0 ? pressed : 0.0, stiffness, place.inverse_mass, way_of(p), before_.back - now_.back},
+        drag_before);
+    known.drag = drag.force;
+    push.energy += drag.stored;
+    push.dissipated = drag.dissipated;
+  }
+  add_force(place.first, place.second, known.drag, push.force);
+}
+
+}  // namespace fexp::contact

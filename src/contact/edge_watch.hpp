@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "contact/node_watch.hpp"
+#include "contact/surface.hpp"
+#include "physics/closest_lines.hpp"
+#include "physics/crossing_edges.hpp"
+
+namespace fexp::contact {
+
+/// A pair of edges that pushes, and what it does to the nodes. The forces sum to zero.
+struct ActiveEdges {
+  Index first{};
+  Index second{};
+  std::array<Vec3d, 4> force;  ///< On the ends of the first and of the second edge [force]
+  Index corner{no_index};      ///< A node besides, that of a triangle at one of the edges
+  Vec3d corner_force;          ///< [force]
+  double at_first{};           ///< Where along the edge, 0 to 1
+  double at_second{};
+  double energy{};  ///< As of ActivePair, and so on
+  double dissipated{};
+  double stiffness{};  ///< A bound where the pair fades
+  double depth{};
+};
+
+/// Watches pairs of edges that cross each other, seen along their common normal: which side of the first edge the
+/// second one belongs on, and the penalty force while they are closer than contact distance.
+///
+/// The gap is that of nodes and elements: side x distance - d, with the sum d of both half thicknesses where the edges
+/// are closest, or the distance in the reference configuration where that is less. Edges push where the surfaces are
+/// closest at their crossing, see physics::sharpness_of; elsewhere nodes against elements see what is closest. Where an
+/// end of one edge is as close to the other edge, it pushes as a node. So a pair has the potential
+///
+///     s/2 (k g^2 - max k_i g_i^2)
+///
+/// with the sharpness s, the edges' gap g and those of the four ends g_i: it passes into that of a node where the
+/// crossing slides over an end, and is there only once. All forces are its derivatives (but those of k and d).
+class EdgeWatch {
+ public:
+  /// Where `before` is `now`, as for NodeWatch.
+  EdgeWatch(const model::Model& model, Positions now, Positions before)
+      : model_(model), now_(now), before_(before), drag_law_(drag_law_of(model)), still_(before.back == now.back) {}
+
+  /// Looks at an edge, which has candidates `second` and a memory (both ascending). Appends what is remembered now and
+  /// the pairs with a force.
+  void look(Index first, std::span<const Index> second, std::span<const model::EdgeSide> memory,
+            std::vector<model::EdgeSide>& remembered, std::vector<ActiveEdges>& active) const;
+
+ private:
+  /// Where two edges are closest, or an end and an edge.
+  struct Place {
+    double first{};  ///< Along the first edge, 0 to 1
+    double second{};
+    double distance{};    ///< Of contact [length]
+    double compliance{};  ///< Of the ends by their weights, in series [length/force]
+    double inverse_mass{};
+  };
+  /// And its derivatives by the height and by the nearness, less the distance.
+  struct Depth {
+    double value{};  ///< [length]
+    double by_height{};
+    double by_nearness{};
+  };
+  struct Pair {
+    Index first{};
+    Index second{};
+    std::array<Index, 4> node{};  ///< Ends of the first and of the second edge
+    physics::ClosestOnLines lines;
+    bool inside{};  ///< The edges cross within both, at an angle
+    [[nodiscard]] int side() const noexcept { return lines.gap < 0.0 ? -1 : 1; }
+  };
+
+  [[nodiscard]] Pair pair_at(const Positions& x, Index first, Index second) const;
+  [[nodiscard]] bool is_there(Index edge) const;
+  [[nodiscard]] Vec3d way_of(const Pair& pair) const;
+  [[nodiscard]] int side_of(const Pair& pair, const model::EdgeSide* known) const;
+  [[nodiscard]] physics::Sharpness sharpness_of(const Pair& pair, int side, std::array<Index, 4>& corner) const;
+  [[nodiscard]] double most_distance(const Pair& pair) const;
+  [[nodiscard]] Place place_at(const Pair& pair, double first, double second, double most_distance) const;
+  [[nodiscard]] double reach_of(const Pair& pair) const;
+  [[nodiscard]] double stiffness(const Place& place) const;
+  [[nodiscard]] static Depth depth_at(double contact_distance, double distance, double height, double reach);
+  void watch(Index first, Index second, const model::EdgeSide* known, std::vector<model::EdgeSide>& remembered,
+             std::vector<ActiveEdges>& active) const;
+  void push(model::EdgeSide& known, const Pair& pair, const Vec3d& drag_before, std::vector<ActiveEdges>& active) const;
+  void leave_to_ends(const Pair& pair, double most_distance, double height, const Vec3d& normal,
+                     ActiveEdges& push) const;
+  void drag(model::EdgeSide& known, const Pair& pair, const Place& place, const Vec3d& normal, double stiffness,
+            const Vec3d& drag_before, ActiveEdges& push) const;
+
+  const model::Model& model_;
+  Positions now_;
+  Positions before_;
+  physics::DragLaw drag_law_;
+  bool still_{};
+};
+
+/// Part of a pair's watch distance that an edge brings: its half thickness, and half of what it may travel in a step.
+[[nodiscard]] inline double edge_reach(const model::Model& model, Index edge) noexcept {
+  const std::array<Index, 2> n = ends_of(model, edge);
+  const double a = model.half_thickness[at(n[0])], b = model.half_thickness[at(n[1])];
+  const double p = model.node_size[at(n[0])], q = model.node_size[at(n[1])];
+  return (a > b ? a : b) + 0.5 * model::watch_margin(p < q ? p : q);
+}
+
+}  // namespace fexp::contact

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "physics/crossing_edges.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace fexp::physics {
+namespace {
+
+Vec3d random_point(std::mt19937& random, double size) {
+  std::uniform_real_distribution<double> place(-size, size);
+  return {place(random), place(random), place(random)};
+}
+
+/// Two edges that cross, one `gap` above the other, and roofs of triangles that fall away from the crossing.
+CrossingEdges roofs(double gap, double slope, int triangles_below, int triangles_above) {
+  CrossingEdges e;
+  e.end = {Vec3d{-1.0, 0.0, 0.0}, Vec3d{1.0, 0.0, 0.0}, Vec3d{0.0, -1.0, gap}, Vec3d{0.0, 1.0, gap}};
+  e.corner[0] = {Vec3d{0.0, 1.0, -slope}, Vec3d{0.0, -1.0, -slope}};
+  e.corner[1] = {Vec3d{1.0, 0.0, gap + slope}, Vec3d{-1.0, 0.0, gap + slope}};
+  e.triangles = {triangles_below, triangles_above};
+  return e;
+}
+
+ClosestOnLines lines_of(const CrossingEdges& e) { return closest_on_lines(e.end[0], e.end[1], e.end[2], e.end[3]); }
+
+double part_of(const CrossingEdges& e, int side) { return sharpness_of(e, lines_of(e), side).part; }
+
+TEST(closest_on_lines, gives_the_points_that_are_closest_and_the_gap_along_the_normal) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3d a0 = random_point(random, 1.0), a1 = random_point(random, 1.0), b0 = random_point(random, 1.0),
+                b1 = random_point(random, 1.0);
+    const ClosestOnLines c = closest_on_lines(a0, a1, b0, b1);
+    if (c.sine2 < 1e-4) {
+      continue;
+    }
+    const Vec3d offset = b0 + c.second * (b1 - b0) - (a0 + c.first * (a1 - a0));
+    EXPECT_NEAR(dot(offset, a1 - a0), 0.0, 1e-9);
+    EXPECT_NEAR(dot(offset, b1 - b0), 0.0, 1e-9);
+    EXPECT_NEAR(dot(offset, c.normal) / norm(c.normal), c.gap, 1e-9);
+  }
+}
+
+TEST(closest_on_lines, of_parallel_edges_and_edges_without_length_says_so) {
+  EXPECT_EQ(closest_on_lines({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 1, 0}).sine2, 0.0);
+  EXPECT_EQ(closest_on_lines({0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {2, 1, 0}).sine2, 0.0);
+}
+
+TEST(edge_distance, is_the_smallest_over_fine_steps_along_both_edges) {
+  std::mt19937 random(4);
+  constexpr int steps = 60;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3d a0 = random_point(random, 1.0), a1 = random_point(random, 1.0), b0 = random_point(random, 1.0),
+                b1 = i % 10 == 0 ? b0 + 2.0 * (a1 - a0) : random_point(random, 1.0);
+    double least = HUGE_VAL;
+    for (int s = 0; s <= steps; ++s) {
+      for (int t = 0; t <= steps; ++t) {
+        const Vec3d p = a0 + (s / double{steps}) * (a1 - a0), q = b0 + (t / double{steps}) * (b1 - b0);
+        least = std::min(least, norm(q - p));
+      }
+    }
+    const double distance = std::sqrt(edge_distance2(a0, a1, b0, b1));
+    EXPECT_LE(distance, least * (1.0 + 1e-12));
+    EXPECT_GE(distance, least - (norm(a1 - a0) + norm(b1 - b0)) / (2.0 * steps));
+  }
+}
+
+TEST(edge_distance, of_edges_without_length_is_that_of_points) {
+  EXPECT_EQ(edge_distance2({0, 0, 0}, {0, 0, 0}, {3, 4, 0}, {3, 4, 0}), 25.0);
+}
+
+TEST(sharpness, is_full_where_both_surfaces_fall_away_and_none_where_one_leads_to_the_other_edge) {
+  EXPECT_EQ(part_of(roofs(0.1, 0.5, 2, 2), 1), 1.0);
+  // From the other side the roofs are valleys.
+  EXPECT_EQ(part_of(roofs(0.1, 0.5, 2, 2), -1), 0.0);
+  CrossingEdges one_leads = roofs(0.1, 0.5, 2, 2);
+  one_leads.corner[1][1].z = 0.05;
+  EXPECT_EQ(part_of(one_leads, 1), 0.0);
+}
+
+TEST(sharpness, of_flat_folds_is_none_and_of_flat_free_edges_full) {
+  EXPECT_EQ(part_of(roofs(0.1, 0.0, 2, 2), 1), 0.0);
+  EXPECT_EQ(part_of(roofs(0.1, 0.0, 1, 1), 1), 1.0);
+  EXPECT_EQ(part_of(roofs(0.1, 0.0, 1, 2), 1), 0.0);
+  EXPECT_EQ(part_of(roofs(0.1, -0.5, 1, 1), 1), 0.0);
+}
+
+TEST(sharpness, fades_as_edges_come_to_be_parallel) {
+  CrossingEdges e = roofs(0.1, 0.5, 1, 1);
+  const auto turned = [&](double sine) {
+    e.end[2] = Vec3d{-1.0, -sine, 0.1};
+    e.end[3] = Vec3d{1.0, sine, 0.1};
+    e.corner[1][0] = Vec3d{0.0, 1.0, 1.0};
+    const ClosestOnLines lines = lines_of(e);
+    return sharpness_of(e, lines, lines.gap > 0.0 ? 1 : -1).part;
+  };
+  EXPECT_EQ(turned(0.2), 1.0);
+  EXPECT_EQ(turned(0.04), 0.0);
+  const double between = turned(0.075);
+  EXPECT_GT(between, 0.1);
+  EXPECT_LT(between, 0.9);
+}
+
+TEST(sharpness, has_the_gradient_that_it_gives) {
+  std::mt19937 random(5);
+  constexpr double step = 1e-6;
+  int faded = 0, by_angle = 0;
+  for (int i = 0; i < 4000; ++i) {
+    CrossingEdges e = roofs(0.3, 0.2, 1 + i % 2, 1 + (i / 2) % 2);
+    if (i % 3 == 0) {  // Nearly parallel
+      e.end[2] = {-1.0, -0.075, 0.3};
+      e.end[3] = {1.0, 0.075, 0.3};
+    }
+    for (Vec3d& x : e.end) {
+      x += random_point(random, 0.2);
+    }
+    for (auto& corners : e.corner) {
+      for (Vec3d& x : corners) {
+        x += random_point(random, 0.2);
+      }
+    }
+    const Sharpness s = sharpness_of(e, lines_of(e), 1);
+    if (!(s.part > 0.02) || !(s.part < 0.98)) {
+      continue;
+    }
+    ++faded;
+    by_angle += s.corner < 0 ? 1 : 0;
+    const auto slope = [&](Vec3d& x, const Vec3d& direction) {
+      const Vec3d kept = x;
+      x = kept + step * direction;
+      const double ahead = part_of(e, 1);
+      x = kept - step * direction;
+      const double behind = part_of(e, 1);
+      x = kept;
+      return (ahead - behind) / (2.0 * step);
+    };
+    for (const Vec3d& direction : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) {
+      for (std::size_t end = 0; end < 4; ++end) {
+        EXPECT_NEAR(slope(e.end[end], direction), dot(s.end[end], direction), 2e-5) << i;
+      }
+      for (std::size_t c = 0; c < 4; ++c) {
+        const double expected = static_cast<int>(c) == s.corner ? dot(s.by_corner, direction) : 0.0;
+        EXPECT_NEAR(slope(e.corner[c / 2][c % 2], direction), expected, 2e-5) << i;
+      }
+    }
+  }
+  EXPECT_GT(faded, 300);
+  EXPECT_GT(by_angle, 30);
+}
+
+}  // namespace
+}  // namespace fexp::physics

@@ -9,6 +9,7 @@
 
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
+#include "model/build_rigid.hpp"
 #include "model/element_shares.hpp"
 #include "model/node_sets.hpp"
 #include "model/topology.hpp"
@@ -67,6 +68,30 @@ void place_layers(Model& model) {
   }
 }
 
+/// Gives the elements of rigid bodies whose mass is given the density for it, and takes all of them out of the search
+/// for the smallest step, unless there are no others: then they stand for what the penalty stiffness of contact has to
+/// go by.
+void make_rigid(const Description& description, Model& model, ElementShares& shares) {
+  const auto is_rigid = [&](const Body& body) { return description.bodies[at(body.description)].rigid; };
+  const bool all_rigid = std::all_of(model.bodies.begin(), model.bodies.end(), is_rigid);
+  for (Body& body : model.bodies) {
+    if (!is_rigid(body)) {
+      continue;
+    }
+    const double given = description.bodies[at(body.description)].mass;
+    double sum = 0.0;
+    for (Index e = body.elements.begin; e < body.elements.end; ++e) {
+      sum += 3.0 * shares.mass[at(e)];
+    }
+    body.density_factor = given > 0.0 ? given / sum : 1.0;
+    for (Index e = body.elements.begin; e < body.elements.end; ++e) {
+      shares.mass[at(e)] *= body.density_factor;
+      shares.inertia[at(e)] *= body.density_factor;
+      shares.step[at(e)] = all_rigid ? std::sqrt(body.density_factor) * shares.step[at(e)] : HUGE_VAL;
+    }
+  }
+}
+
 /// Gives elements that need a smaller step than asked for as much mass as it takes: the step goes with its root.
 void scale_masses(Model& model, ElementShares& shares) {
   const double target = model.run.minimum_step / model.run.safety;
@@ -87,10 +112,11 @@ void scale_masses(Model& model, ElementShares& shares) {
 }
 
 /// Lumped masses and inertias, areas, half thicknesses and penalty stiffnesses; each node gathers its own corners.
-void build_masses(Model& model) {
+void build_masses(const Description& description, Model& model) {
   const std::size_t elements = model.triangle.size(), nodes = model.reference_position.size();
   ElementShares shares = element_shares(model);
   model.reference_area = std::move(shares.area);
+  make_rigid(description, model, shares);
   scale_masses(model, shares);
   model.first_critical_step = HUGE_VAL;
   for (std::size_t e = 0; e < elements; ++e) {
@@ -139,10 +165,7 @@ void build_velocities(const Description& description, Model& model) {
   parallel::for_each(model.body_count(), 1, [&](Index index) {
     const Body& body = model.bodies[at(index)];
     const BodyDescription& given = description.bodies[at(body.description)];
-    Vec3d centre;
-    for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
-      centre += (model.mass[at(n)] / body.mass) * model.reference_position[at(n)];
-    }
+    const Vec3d centre = centre_of_mass(model, body);
     parallel::for_each(body.nodes.size(), 4096, [&](Index i) {
       const std::size_t n = at(body.nodes.begin + i);
       model.initial_velocity[n] = given.velocity + cross(given.angular_velocity, model.reference_position[n] - centre);
@@ -192,6 +215,9 @@ void build_exclusions(const Description& description, Model& model, ErrorList& e
       }
     }
   }
+  for (const RigidBody& rigid : model.rigid_bodies) {  // Its parts keep their distances.
+    model.excluded_pairs.emplace_back(rigid.body, rigid.body);
+  }
   std::sort(model.excluded_pairs.begin(), model.excluded_pairs.end());
   model.excluded_pairs.erase(std::unique(model.excluded_pairs.begin(), model.excluded_pairs.end()),
                              model.excluded_pairs.end());
@@ -222,9 +248,10 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   model.corner = std::move(rows.corner);
   build_node_sets(description, groups, model, errors);
   build_point_masses(description, model);
-  build_masses(model);
+  build_masses(description, model);
   check_masses(description, model, errors);
   build_velocities(description, model);
+  build_rigid_bodies(description, model);
   build_exclusions(description, model, errors);
   build_conditions(description, meshes, model, errors);
   return model;

@@ -326,6 +326,10 @@ void check_description(const Description& description, ErrorList& errors) {
   for (const BodyDescription& body : description.bodies) {
     check_body_sections(body, sections, errors);
     check_placement(body, errors);
+    if (body.mass > 0.0 && !body.rigid) {
+      errors.add(body.place, fmt::format("body \"{}\" is given a mass and is not rigid", body.name),
+                 "mass with rigid = true only", "set rigid, or give the density of its material");
+    }
   }
   for (const Fixed& fixed : description.fixed) {
     check_axes(fixed.axes, fixed.set, fixed.place, errors);

@@ -139,6 +139,8 @@ struct BodyDescription {
   bool flip_normals{false};
   Place place;
   Place mesh_place;
+  bool rigid{false};
+  double mass{-1.0};  ///< Of the shells of a rigid body [mass]; negative: that of their material
 
   static constexpr auto fields = std::tuple{
       Field{"name", "-", "Name of the body; copies of an array get [i,j,k] appended.", &BodyDescription::name,
@@ -155,6 +157,12 @@ struct BodyDescription {
       Field{"angular_velocity", "1/time", "Initial angular velocity about the body's centre of mass.",
             &BodyDescription::angular_velocity},
       Field{"flip_normals", "-", "Turn all normals round.", &BodyDescription::flip_normals},
+      Field{"rigid", "-",
+            "The body moves with six degrees of freedom and does not deform. Conditions on it name all its nodes and "
+            "mean its centre of mass and its rotation.",
+            &BodyDescription::rigid},
+      Field{"mass", "mass", "Of a rigid body: mass of its shells, each copy's, instead of that of their material.",
+            &BodyDescription::mass, positive},
   };
 };
 

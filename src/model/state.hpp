@@ -10,6 +10,7 @@
 #include "base/index.hpp"
 #include "base/vec3.hpp"
 #include "model/model.hpp"
+#include "model/rigid_motion.hpp"
 
 namespace fexp::model {
 
@@ -70,6 +71,7 @@ struct State {
   AlignedVector<NodeAcceleration> acceleration;  // [nodes]
   AlignedVector<double> history;                 // [blocks][element_rows][block_lanes]
   AlignedVector<double> layers;                  // [layered blocks][physics::layer_rows][block_lanes]
+  std::vector<RigidMotion> rigid;                // [rigid bodies]; the motion of their nodes follows from it
   std::vector<std::vector<ContactSide>> sides;   // [bodies]: sorted by (node, element); the body's nodes, and
                                                  // barriers' nodes with its elements
   std::vector<BodyLedger> ledger;                // [bodies]

@@ -52,7 +52,8 @@ struct Diagnostics {
   return b.step < a.step ? b : a;
 }
 
-/// Critical step over one body's elements in the current geometry.
+/// Critical step over one body's elements in the current geometry. A rigid body has the model's first critical step, or
+/// the one in which it turns by a fifth of a radian.
 [[nodiscard]] CriticalStep body_critical_step(const model::Model& model, const model::State& state, Index body);
 
 }  // namespace fexp::solve

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/workspace.hpp"
 
+#include <algorithm>
+
 namespace fexp::solve {
 
 Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
@@ -23,8 +25,13 @@ Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
     body.plane_force.resize(model.planes.size());
   }
   body_contact.resize(model.bodies.size());
-  external = !load.empty() || model.run.damping > 0.0 || model.run.is_static() || !model.planes.empty() ||
-             !model.fixed.empty() || !model.prescribed.empty() || !model.symmetry.empty() || !model.oblique.empty();
+  const bool holds_rigid =
+      std::any_of(model.rigid_bodies.begin(), model.rigid_bodies.end(), [](const model::RigidBody& body) {
+        return !body.turns_freely || !body.held.empty() || !body.prescribed.empty();
+      });
+  external = holds_rigid || !load.empty() || model.run.damping > 0.0 || model.run.is_static() ||
+             !model.planes.empty() || !model.fixed.empty() || !model.prescribed.empty() || !model.symmetry.empty() ||
+             !model.oblique.empty();
 }
 
 }  // namespace fexp::solve

@@ -393,6 +393,32 @@ TEST(build_errors, a_node_of_no_triangle_is_named_by_its_label) {
              {"node 109", "belongs to no triangle"});
 }
 
+TEST(build_errors, conditions_on_a_part_of_a_rigid_body_are_refused) {
+  Description d = good();
+  d.bodies[0].rigid = true;
+  d.fixed.push_back({"edge", {"x"}, line_7});
+  expect_one(errors_of(d), {"\"edge\" has 3 of the 9 nodes", "\"plate\"", "rigid and held as a whole"});
+  d.fixed.clear();
+  d.prescribed.push_back({"edge", "x", 1.0, "", line_7});
+  expect_one(errors_of(d), {"\"edge\" has 3 of the 9 nodes", "\"plate\"", "rigid and moved as a whole"});
+  d.prescribed.clear();
+  d.node_sets.back().box = {};
+  d.fixed.push_back({"edge", {"x"}, line_7});
+  EXPECT_TRUE(errors_of(d).empty()) << "all of its nodes";
+  d.fixed.clear();
+  d.symmetry.push_back({"edge", {0.0, 0.0, 1.0}, line_7});
+  expect_one(errors_of(d), {"plane of symmetry", "\"plate\", which is rigid"});
+}
+
+TEST(build_errors, a_mass_of_a_body_that_deforms_is_refused) {
+  Description d = good();
+  d.bodies[1].mass = 2.0;
+  d.bodies[1].place = line_7;
+  expect_one(errors_of(d), {"\"ball\" is given a mass and is not rigid"});
+  d.bodies[1].rigid = true;
+  EXPECT_TRUE(errors_of(d).empty());
+}
+
 TEST(build_errors, independent_errors_are_reported_together) {
   Description d = good();
   d.bodies[0].section.clear();

@@ -58,6 +58,41 @@ void build_sections(const Description& description, Model& model) {
   }
 }
 
+/// What all shapes of walls have.
+template <class RigidWall>
+Wall wall_of(const RigidWall& given, WallShape shape, const Vec3d& point, const Vec3d& direction, const Model& model) {
+  Wall wall;
+  wall.name = given.name;
+  wall.shape = shape;
+  wall.point = point;
+  wall.direction = shape == WallShape::sphere ? Vec3d{} : (1.0 / norm(direction)) * direction;
+  wall.stiffness = given.stiffness;
+  const bool displaced = given.displacement != Vec3d{};
+  wall.moves = displaced || given.velocity != Vec3d{};
+  wall.kind = displaced ? PrescribedKind::displacement : PrescribedKind::velocity;
+  wall.motion = displaced ? given.displacement : given.velocity;
+  for (std::size_t i = 0; i < model.curves.size(); ++i) {
+    wall.curve = model.curves[i].name == given.curve ? static_cast<Index>(i) : wall.curve;
+  }
+  return wall;
+}
+
+void build_walls(const Description& description, Model& model) {
+  for (const RigidPlane& plane : description.planes) {
+    model.walls.push_back(wall_of(plane, WallShape::plane, plane.point, plane.normal, model));
+  }
+  for (const RigidCylinder& cylinder : description.cylinders) {
+    Wall& wall = model.walls.emplace_back(wall_of(cylinder, WallShape::cylinder, cylinder.point, cylinder.axis, model));
+    wall.radius = cylinder.radius;
+    wall.inside = cylinder.inside;
+  }
+  for (const RigidSphere& sphere : description.spheres) {
+    Wall& wall = model.walls.emplace_back(wall_of(sphere, WallShape::sphere, sphere.centre, {}, model));
+    wall.radius = sphere.radius;
+    wall.inside = sphere.inside;
+  }
+}
+
 /// Gives every block of a layered section its rows of State::layers.
 void place_layers(Model& model) {
   Index row = 0;
@@ -233,10 +268,7 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   model.contact = description.contact;
   model.curves = description.curves;
   build_curve_areas(model);
-  model.planes = description.planes;
-  for (RigidPlane& plane : model.planes) {
-    plane.normal = (1.0 / norm(plane.normal)) * plane.normal;
-  }
+  build_walls(description, model);
   build_sections(description, model);
   const auto groups = build_bodies(description, meshes, model, errors);
   if (!errors.empty()) {

@@ -211,20 +211,12 @@ void check_axes(const std::optional<LocalAxes>& axes, const std::string& set, co
   }
 }
 
-/// One motion, and a displacement that does not jump, as that would take a boundless speed.
-void check_prescribed(const Prescribed& p, const std::vector<Curve>& curves, ErrorList& errors) {
-  check_dof(p.dof, p.place, errors);
-  check_axes(p.axes, p.set, p.place, errors);
-  const int given = (p.velocity ? 1 : 0) + (p.displacement ? 1 : 0) + (p.acceleration ? 1 : 0);
-  if (given != 1) {
-    errors.add(p.place,
-               fmt::format("set \"{}\" is given {} prescribed motions for one degree of freedom", p.set, given),
-               "one of velocity, displacement and acceleration", given == 0 ? "add one of them" : "keep one of them");
-  }
+/// A displacement that does not jump, as that would take a boundless speed. `name` says whose it is.
+void check_displacement(const std::string& name, const std::string& curve_name, const std::vector<Curve>& curves,
+                        const Place& place, ErrorList& errors) {
   const auto curve =
-      std::find_if(curves.begin(), curves.end(), [&](const Curve& candidate) { return candidate.name == p.curve; });
-  if (!p.displacement || (curve == curves.end() && !p.curve.empty()) ||
-      (curve != curves.end() && curve->points.empty())) {
+      std::find_if(curves.begin(), curves.end(), [&](const Curve& candidate) { return candidate.name == curve_name; });
+  if ((curve == curves.end() && !curve_name.empty()) || (curve != curves.end() && curve->points.empty())) {
     return;
   }
   double start = 1.0;
@@ -237,11 +229,68 @@ void check_prescribed(const Prescribed& p, const std::vector<Curve>& curves, Err
     }
   }
   if (start != 0.0 || jumps) {
-    errors.add(p.place,
-               start != 0.0
-                   ? fmt::format("the displacement of set \"{}\" is {:g} times its size at the start", p.set, start)
-                   : fmt::format("the displacement of set \"{}\" jumps", p.set),
+    errors.add(place,
+               start != 0.0 ? fmt::format("the displacement of {} is {:g} times its size at the start", name, start)
+                            : fmt::format("the displacement of {} jumps", name),
                "a curve that is 0 at time 0 and has no time twice", "let the displacement grow from zero by its curve");
+  }
+}
+
+/// One motion.
+void check_prescribed(const Prescribed& p, const std::vector<Curve>& curves, ErrorList& errors) {
+  check_dof(p.dof, p.place, errors);
+  check_axes(p.axes, p.set, p.place, errors);
+  const int given = (p.velocity ? 1 : 0) + (p.displacement ? 1 : 0) + (p.acceleration ? 1 : 0);
+  if (given != 1) {
+    errors.add(p.place,
+               fmt::format("set \"{}\" is given {} prescribed motions for one degree of freedom", p.set, given),
+               "one of velocity, displacement and acceleration", given == 0 ? "add one of them" : "keep one of them");
+  }
+  if (p.displacement) {
+    check_displacement(fmt::format("set \"{}\"", p.set), p.curve, curves, p.place, errors);
+  }
+}
+
+/// A wall moves in one way, if it moves.
+template <class RigidWall>
+void check_wall_motion(std::string_view kind, const RigidWall& wall, const std::vector<Curve>& curves,
+                       ErrorList& errors) {
+  const std::string name = fmt::format("{} \"{}\"", kind, wall.name);
+  const bool moved = wall.velocity != Vec3d{}, displaced = wall.displacement != Vec3d{};
+  if (moved && displaced) {
+    errors.add(wall.place, fmt::format("{} has a velocity and a displacement", name), "one of them",
+               "keep one of them");
+  } else if (displaced) {
+    check_displacement(name, wall.curve, curves, wall.place, errors);
+  } else if (!moved && !wall.curve.empty()) {
+    errors.add(wall.place, fmt::format("{} names a curve and does not move", name),
+               "a curve with a velocity or a displacement", "add one of them, or leave the curve out");
+  }
+}
+
+void check_walls(const Description& description, ErrorList& errors) {
+  check_names("plane", description.planes, {}, errors);
+  const std::vector<std::string> planes = names_of(description.planes), cylinders = names_of(description.cylinders);
+  std::set<std::string> taken(planes.begin(), planes.end());
+  check_names("wall", description.cylinders, taken, errors);
+  taken.insert(cylinders.begin(), cylinders.end());
+  check_names("wall", description.spheres, taken, errors);
+  for (const RigidPlane& plane : description.planes) {
+    if (!has_direction(plane.normal)) {
+      errors.add(plane.place, fmt::format("the normal of plane \"{}\" has no direction", plane.name),
+                 "a vector that is not zero", "correct the normal");
+    }
+    check_wall_motion("plane", plane, description.curves, errors);
+  }
+  for (const RigidCylinder& cylinder : description.cylinders) {
+    if (!has_direction(cylinder.axis)) {
+      errors.add(cylinder.place, fmt::format("the axis of cylinder \"{}\" has no direction", cylinder.name),
+                 "a vector that is not zero", "correct the axis");
+    }
+    check_wall_motion("cylinder", cylinder, description.curves, errors);
+  }
+  for (const RigidSphere& sphere : description.spheres) {
+    check_wall_motion("sphere", sphere, description.curves, errors);
   }
 }
 
@@ -306,7 +355,7 @@ void check_description(const Description& description, ErrorList& errors) {
   check_names("section", description.sections, {}, errors);
   check_names("body", description.bodies, {}, errors);
   check_names("node set", description.node_sets, {"all"}, errors);
-  check_names("plane", description.planes, {}, errors);
+  check_walls(description, errors);
 
   const std::vector<std::string> materials = names_of(description.materials);
   const std::vector<std::string> sections = names_of(description.sections);
@@ -351,12 +400,6 @@ void check_description(const Description& description, ErrorList& errors) {
                  "correct the normal");
     }
   }
-  for (const RigidPlane& plane : description.planes) {
-    if (!has_direction(plane.normal)) {
-      errors.add(plane.place, fmt::format("the normal of plane \"{}\" has no direction", plane.name),
-                 "a vector that is not zero", "correct the normal");
-    }
-  }
   ReferenceChecks references(description, errors);
   references(description.fixed);
   references(description.prescribed);
@@ -365,6 +408,9 @@ void check_description(const Description& description, ErrorList& errors) {
   references(description.pressure);
   references(description.forces);
   references(description.point_masses);
+  references(description.planes);
+  references(description.cylinders);
+  references(description.spheres);
 }
 
 void check_symmetry(const Description& description, const Model& model, ErrorList& errors) {

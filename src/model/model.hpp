@@ -143,6 +143,23 @@ struct GravityLoad {
   Index curve{no_index};
 };
 
+enum class WallShape : std::uint8_t { plane, cylinder, sphere };
+
+/// A surface that nodes do not pass.
+struct Wall {
+  std::string name;
+  WallShape shape{};
+  Vec3d point{};           ///< Of a plane, of the axis of a cylinder, or the centre, at time zero [length]
+  Vec3d direction{};       ///< Unit vector: normal of a plane, towards the free side, or axis of a cylinder
+  double radius{};         ///< [length]
+  bool inside{};           ///< Of cylinders and spheres: nodes stay inside.
+  double stiffness{-1.0};  ///< Penalty stiffness per node [force/length]; negative: that of the node
+  bool moves{};
+  PrescribedKind kind{};  ///< Velocity or displacement
+  Vec3d motion{};         ///< Times the curve [length/time] or [length]
+  Index curve{no_index};
+};
+
 struct NamedNodes {
   std::string name;
   std::vector<Index> nodes;  ///< Ascending.
@@ -194,7 +211,7 @@ struct Model {
   std::vector<AddedNode> point_masses;
   std::vector<Curve> curves;
   std::vector<std::vector<double>> curve_areas;  ///< Integral of each curve from its first point to each of them [time]
-  std::vector<RigidPlane> planes;                ///< Normals are unit vectors.
+  std::vector<Wall> walls;                       ///< Planes, cylinders and spheres of the deck
   std::vector<NamedNodes> node_sets;
 
   bool plastic{};   ///< Some section has points through its thickness.

@@ -58,8 +58,8 @@ struct BodyLedger {
   double external_work{};            ///< Loads, gravity and prescribed motion [force*length], integrated
   double damping_work{};             ///< Work taken out by damping (>= 0) [force*length], integrated
   double contact_energy{};           ///< Potential of the pairs whose node is this body's [force*length]
-  double barrier_energy{};           ///< Potential of rigid planes [force*length]
-  Vec3d external_impulse{};          ///< Loads, planes, damping and constraints [force*time], integrated
+  double barrier_energy{};           ///< Potential of rigid walls [force*length]
+  Vec3d external_impulse{};          ///< Loads, walls, damping and constraints [force*time], integrated
   Vec3d external_angular_impulse{};  ///< The same about the origin [force*length*time], integrated
 };
 

@@ -13,7 +13,7 @@ struct Energies {
   double kinetic{};
   double internal{};    ///< Sum of the elements' stress work
   double contact{};     ///< Potential of contact pairs
-  double barrier{};     ///< Potential of rigid planes
+  double barrier{};     ///< Potential of rigid walls
   double external{};    ///< Work put in by loads, gravity and prescribed motion
   double damping{};     ///< Work taken out by damping
   double dissipated{};  ///< Of the internal energy what plastic flow has taken

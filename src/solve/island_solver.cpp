@@ -9,6 +9,7 @@
 #include "parallel/parallel.hpp"
 #include "solve/island_step.hpp"
 #include "solve/loads.hpp"
+#include "solve/walls.hpp"
 
 namespace fexp::solve {
 
@@ -60,7 +61,9 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
     }
   }
   partials_.resize(pieces_.size());
-  plane_partials_.resize(pieces_.size() * model.planes.size());
+  wall_partials_.resize(pieces_.size() * model.walls.size());
+  wall_points_.resize(model.walls.size());
+  wall_ways_.resize(model.walls.size());
   travelled_.resize(bodies_.size());
   contact_.assign(model, bodies_, barriers_, state);
   contact_report_ = {};
@@ -72,6 +75,7 @@ void IslandSolver::evaluate(const model::Model& model, model::State& state, Work
   for (Partial& partial : partials_) {
     partial = {};
   }
+  move_walls(still);
   contact_forces(still);
   if (!workspace.load.empty()) {
     load_nodes(still);
@@ -170,13 +174,32 @@ void IslandSolver::kick(const Step& step, const Piece& piece, Partial& partial) 
   }
 }
 
+/// Where the walls are at the end of the step, and how far they come in it.
+void IslandSolver::move_walls(const Step& step) {
+  for (std::size_t w = 0; w < step.model.walls.size(); ++w) {
+    wall_points_[w] = wall_point(step.model, step.model.walls[w], step.end_time);
+    wall_ways_[w] = wall_points_[w] - wall_point(step.model, step.model.walls[w], step.end_time - step.dt);
+  }
+}
+
+/// Work that the walls do on a body with the forces of one end of the step.
+double IslandSolver::half_work_of_walls(const BodyActions& actions) const {
+  double work = 0.0;
+  for (std::size_t w = 0; w < wall_ways_.size(); ++w) {
+    work += 0.5 * dot(actions.wall_force[w], wall_ways_[w]);
+  }
+  return work;
+}
+
 void IslandSolver::opening_half(const Step& step) {
   const double half = step.half_dt();
   const bool external = step.workspace.external;
   if (external) {
+    move_walls(step);
     for (const Index body : bodies_) {
       const BodyActions& actions = step.workspace.actions[at(body)];
       model::BodyLedger& ledger = step.state.ledger[at(body)];
+      ledger.external_work += half_work_of_walls(actions);
       ledger.external_impulse += half * actions.force;
       ledger.external_angular_impulse += half * actions.moment;
     }
@@ -390,15 +413,15 @@ void IslandSolver::clear_actions(const Step& step, std::size_t index) {
   partial.moment = {};
   partial.barrier_energy = 0.0;
   partial.barrier_frequency2 = 0.0;
-  const std::size_t planes = step.model.planes.size();
-  std::fill_n(plane_partials_.begin() + static_cast<std::ptrdiff_t>(index * planes), planes, Vec3d{});
+  const std::size_t walls = step.model.walls.size();
+  std::fill_n(wall_partials_.begin() + static_cast<std::ptrdiff_t>(index * walls), walls, Vec3d{});
 }
 
 /// What acts on a node of a piece from outside, booked in the piece's partial sums.
 NodalAction IslandSolver::act_on_node(const Step& step, Index n, std::size_t index) {
   const model::Model& model = step.model;
   const model::NodeMotion& motion = step.state.motion[at(n)];
-  const std::size_t planes = model.planes.size();
+  const std::size_t walls = model.walls.size();
   Partial& partial = partials_[index];
   NodalAction outside;
   if (!step.workspace.load.empty()) {
@@ -407,12 +430,12 @@ NodalAction IslandSolver::act_on_node(const Step& step, Index n, std::size_t ind
         step.half_dt() * (dot(outside.force, motion.velocity) + dot(outside.moment, motion.rotation_rate));
   }
   double stiffness = 0.0;
-  for (std::size_t p = 0; p < planes; ++p) {
-    const PlaneReaction reaction = plane_reaction(model, model.planes[p], n, motion.position);
+  for (std::size_t w = 0; w < walls; ++w) {
+    const WallReaction reaction = wall_reaction(model, model.walls[w], wall_points_[w], n, motion.position);
     outside.force += reaction.force;
     partial.barrier_energy += reaction.energy;
     stiffness += reaction.stiffness;
-    plane_partials_[index * planes + p] += reaction.force;
+    wall_partials_[index * walls + w] += reaction.force;
   }
   partial.barrier_frequency2 = maximum(partial.barrier_frequency2, stiffness / model.mass[at(n)]);
   partial.force += outside.force;
@@ -450,22 +473,22 @@ void IslandSolver::act_on_bodies(const Step& step) {
   if (!workspace.external) {
     return;
   }
-  const std::size_t planes = step.model.planes.size();
+  const std::size_t walls = step.model.walls.size();
   barrier_frequency2_ = 0.0;
   std::size_t piece = 0;
   for (const Index body : bodies_) {
     BodyActions& actions = workspace.actions[at(body)];
     actions.force = workspace.body_contact[at(body)].barrier_force;
     actions.moment = workspace.body_contact[at(body)].barrier_moment;
-    std::fill(actions.plane_force.begin(), actions.plane_force.end(), Vec3d{});
+    std::fill(actions.wall_force.begin(), actions.wall_force.end(), Vec3d{});
     double barrier_energy = 0.0;
     for (; piece < pieces_.size() && pieces_[piece].body == body; ++piece) {
       actions.force += partials_[piece].force;
       actions.moment += partials_[piece].moment;
       barrier_energy += partials_[piece].barrier_energy;
       barrier_frequency2_ = maximum(barrier_frequency2_, partials_[piece].barrier_frequency2);
-      for (std::size_t p = 0; p < planes; ++p) {
-        actions.plane_force[p] += plane_partials_[piece * planes + p];
+      for (std::size_t w = 0; w < walls; ++w) {
+        actions.wall_force[w] += wall_partials_[piece * walls + w];
       }
     }
     step.state.ledger[at(body)].barrier_energy = barrier_energy;
@@ -496,6 +519,7 @@ void IslandSolver::book_closing_half(const Step& step) {
   for (const Index body : bodies_) {
     const BodyActions& actions = step.workspace.actions[at(body)];
     model::BodyLedger& ledger = step.state.ledger[at(body)];
+    ledger.external_work += half_work_of_walls(actions);
     ledger.external_impulse += half * actions.force;
     ledger.external_angular_impulse += half * actions.moment;
     for (; piece < pieces_.size() && pieces_[piece].body == body; ++piece) {

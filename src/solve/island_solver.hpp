@@ -38,7 +38,7 @@ struct IslandReport {
   StopReason stop{StopReason::none};
   Index stop_body{no_index};
   Index stop_node{no_index};    ///< For not_finite: the lowest node concerned.
-  double contact_frequency2{};  ///< Largest bound of omega^2 from contact and planes seen [1/time^2]
+  double contact_frequency2{};  ///< Largest bound of omega^2 from contact and walls seen [1/time^2]
   Index active_pairs{};         ///< At the last step
   Index most_active_pairs{};
   Index candidates{};
@@ -116,6 +116,8 @@ class IslandSolver {
   void advance_patch(const Step& step, Pass pass, std::size_t piece);
   void advance_nodes(const Step& step, Pass pass, const NodeKernelArguments& arguments, std::size_t index);
   void accelerate(const Step& step, const NodeKernelArguments& k, std::size_t index);
+  void move_walls(const Step& step);
+  [[nodiscard]] double half_work_of_walls(const BodyActions& actions) const;
   void clear_actions(const Step& step, std::size_t index);
   NodalAction act_on_node(const Step& step, Index n, std::size_t index);
   void act_on_bodies(const Step& step);
@@ -148,14 +150,16 @@ class IslandSolver {
   contact::IslandContact contact_;
   std::vector<Index> bodies_;
   std::vector<Index> barriers_;
-  std::vector<Piece> pieces_;          // In order of bodies, of each the patches first
-  std::vector<Index> patch_pieces_;    // Those that are patches
-  std::vector<Index> border_pieces_;   // The others
-  std::vector<Index> rigid_pieces_;    // Those of rigid bodies, in none of the two lists above
-  std::vector<RigidPart> rigid_;       // Rigid bodies
-  std::vector<Partial> partials_;      // [pieces]
-  std::vector<Vec3d> plane_partials_;  // [pieces][planes]
-  std::vector<double> travelled_;      // [bodies of the island]: bound of the distance since the epoch's start
+  std::vector<Piece> pieces_;         // In order of bodies, of each the patches first
+  std::vector<Index> patch_pieces_;   // Those that are patches
+  std::vector<Index> border_pieces_;  // The others
+  std::vector<Index> rigid_pieces_;   // Those of rigid bodies, in none of the two lists above
+  std::vector<RigidPart> rigid_;      // Rigid bodies
+  std::vector<Partial> partials_;     // [pieces]
+  std::vector<Vec3d> wall_partials_;  // [pieces][walls]
+  std::vector<Vec3d> wall_points_;    // [walls]: at the end of the step
+  std::vector<Vec3d> wall_ways_;      // [walls]: in the step
+  std::vector<double> travelled_;     // [bodies of the island]: bound of the distance since the epoch's start
   contact::ContactReport contact_report_;
   double barrier_frequency2_{};
   Index elements_{};

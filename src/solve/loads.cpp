@@ -82,14 +82,4 @@ double sudden_load_energy(const model::Model& model, const model::State& start, 
   return 0.125 * dt * dt * sum;
 }
 
-PlaneReaction plane_reaction(const model::Model& model, const model::RigidPlane& plane, Index node,
-                             const Vec3d& position) noexcept {
-  const double gap = model.half_thickness[at(node)] - dot(position - plane.point, plane.normal);
-  if (!(gap > 0.0)) {
-    return {};
-  }
-  const double stiffness = plane.stiffness >= 0.0 ? plane.stiffness : model.contact_stiffness[at(node)];
-  return {(stiffness * gap) * plane.normal, 0.5 * stiffness * gap * gap, stiffness};
-}
-
 }  // namespace fexp::solve

@@ -203,8 +203,8 @@ inline model::Description rigid_and_soft() {
   return d;
 }
 
-/// Rigid bodies that are loaded, driven and held: a ball of given mass thrown onto a damped plate under gravity above a
-/// plane, and a stamp that is lowered by a curve and turned, and may slide in one direction.
+/// Rigid bodies that are loaded, driven and held: a ball of given mass thrown onto a damped plate under gravity between
+/// walls of all shapes that move, and a stamp that is lowered by a curve and turned, and may slide in one direction.
 inline model::Description rigid_machine() {
   model::Description d = with_contact(0.02);
   d.contact.penalty_scale = 4.0;
@@ -235,6 +235,21 @@ inline model::Description rigid_machine() {
   d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
   d.pressure.push_back({{"ball"}, "", 30.0, "press", {}});
   d.planes.push_back({"floor", {0.0, 0.0, -0.05}, {0.0, 0.1, 1.0}, -1.0, {}});
+  d.planes.back().displacement = {0.0, 0.0, 0.04};
+  d.planes.back().curve = "press";
+  model::RigidSphere& bowl = d.spheres.emplace_back();
+  bowl.name = "bowl";
+  bowl.centre = {1.0, 1.0, 0.4};
+  bowl.radius = 1.6;
+  bowl.inside = true;
+  bowl.velocity = {2.0, 0.0, 0.0};
+  model::RigidCylinder& roll = d.cylinders.emplace_back();
+  roll.name = "roll";
+  roll.point = {-0.05, 0.3, 0.3};
+  roll.axis = {0.1, 1.0, 0.0};
+  roll.radius = 0.2;
+  roll.displacement = {0.0, 0.0, -0.15};
+  roll.curve = "press";
   d.run.damping = 1.0;
   d.run.energy_drift_limit = 1.0;
   return d;

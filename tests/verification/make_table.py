@@ -57,6 +57,9 @@ CASES = {
     52: "Thrown rigid plate",
     53: "Rigid ball on a plane",
     54: "Rigid ball on an elastic plate",
+    55: "Plate pushed by a plane",
+    56: "Ball and round walls",
+    57: "Ball struck by a wall",
 }
 
 

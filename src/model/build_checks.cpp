@@ -7,40 +7,15 @@
 #include <cmath>
 #include <set>
 
+#include "model/check_tools.hpp"
+#include "model/wall_checks.hpp"
+
 namespace fexp::model {
 
 namespace {
 
-bool has_direction(const Vec3d& v) {
-  const double length = norm(v);
-  return length > 0.0 && std::isfinite(length);
-}
-
-template <class Named>
-std::vector<std::string> names_of(const std::vector<Named>& items) {
-  std::vector<std::string> names;
-  for (const Named& item : items) {
-    names.push_back(item.name);
-  }
-  return names;
-}
-
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-/// Every name is given once and is not empty; `reserved` counts as given.
-template <class Named>
-void check_names(std::string_view kind, const std::vector<Named>& items, std::set<std::string> reserved,
-                 ErrorList& errors) {
-  for (const Named& item : items) {
-    if (item.name.empty()) {
-      errors.add(item.place, fmt::format("this {} has no name", kind), "a name of its own", "give it a name");
-    } else if (!reserved.insert(item.name).second) {
-      errors.add(item.place, fmt::format("the name \"{}\" is already that of another {}", item.name, kind),
-                 "a name of its own", "rename one of them");
-    }
-  }
 }
 
 void check_curve(const Curve& curve, ErrorList& errors) {
@@ -211,31 +186,6 @@ void check_axes(const std::optional<LocalAxes>& axes, const std::string& set, co
   }
 }
 
-/// A displacement that does not jump, as that would take a boundless speed. `name` says whose it is.
-void check_displacement(const std::string& name, const std::string& curve_name, const std::vector<Curve>& curves,
-                        const Place& place, ErrorList& errors) {
-  const auto curve =
-      std::find_if(curves.begin(), curves.end(), [&](const Curve& candidate) { return candidate.name == curve_name; });
-  if ((curve == curves.end() && !curve_name.empty()) || (curve != curves.end() && curve->points.empty())) {
-    return;
-  }
-  double start = 1.0;
-  bool jumps = false;
-  if (curve != curves.end()) {
-    const auto& points = curve->points;
-    start = value_of(*curve, 0.0);
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      jumps = jumps || points[i][0] == points[i - 1][0];
-    }
-  }
-  if (start != 0.0 || jumps) {
-    errors.add(place,
-               start != 0.0 ? fmt::format("the displacement of {} is {:g} times its size at the start", name, start)
-                            : fmt::format("the displacement of {} jumps", name),
-               "a curve that is 0 at time 0 and has no time twice", "let the displacement grow from zero by its curve");
-  }
-}
-
 /// One motion.
 void check_prescribed(const Prescribed& p, const std::vector<Curve>& curves, ErrorList& errors) {
   check_dof(p.dof, p.place, errors);
@@ -248,49 +198,6 @@ void check_prescribed(const Prescribed& p, const std::vector<Curve>& curves, Err
   }
   if (p.displacement) {
     check_displacement(fmt::format("set \"{}\"", p.set), p.curve, curves, p.place, errors);
-  }
-}
-
-/// A wall moves in one way, if it moves.
-template <class RigidWall>
-void check_wall_motion(std::string_view kind, const RigidWall& wall, const std::vector<Curve>& curves,
-                       ErrorList& errors) {
-  const std::string name = fmt::format("{} \"{}\"", kind, wall.name);
-  const bool moved = wall.velocity != Vec3d{}, displaced = wall.displacement != Vec3d{};
-  if (moved && displaced) {
-    errors.add(wall.place, fmt::format("{} has a velocity and a displacement", name), "one of them",
-               "keep one of them");
-  } else if (displaced) {
-    check_displacement(name, wall.curve, curves, wall.place, errors);
-  } else if (!moved && !wall.curve.empty()) {
-    errors.add(wall.place, fmt::format("{} names a curve and does not move", name),
-               "a curve with a velocity or a displacement", "add one of them, or leave the curve out");
-  }
-}
-
-void check_walls(const Description& description, ErrorList& errors) {
-  check_names("plane", description.planes, {}, errors);
-  const std::vector<std::string> planes = names_of(description.planes), cylinders = names_of(description.cylinders);
-  std::set<std::string> taken(planes.begin(), planes.end());
-  check_names("wall", description.cylinders, taken, errors);
-  taken.insert(cylinders.begin(), cylinders.end());
-  check_names("wall", description.spheres, taken, errors);
-  for (const RigidPlane& plane : description.planes) {
-    if (!has_direction(plane.normal)) {
-      errors.add(plane.place, fmt::format("the normal of plane \"{}\" has no direction", plane.name),
-                 "a vector that is not zero", "correct the normal");
-    }
-    check_wall_motion("plane", plane, description.curves, errors);
-  }
-  for (const RigidCylinder& cylinder : description.cylinders) {
-    if (!has_direction(cylinder.axis)) {
-      errors.add(cylinder.place, fmt::format("the axis of cylinder \"{}\" has no direction", cylinder.name),
-                 "a vector that is not zero", "correct the axis");
-    }
-    check_wall_motion("cylinder", cylinder, description.curves, errors);
-  }
-  for (const RigidSphere& sphere : description.spheres) {
-    check_wall_motion("sphere", sphere, description.curves, errors);
   }
 }
 

@@ -173,6 +173,13 @@ CASES = {
                                         "displacement = 1.0")),
         "Axes that span no plane": Case(('set = "rim"', 'set = "rim"\ndofs = ["x"]\n'
                                          "axes = { x = [1.0, 0.0, 0.0], xy = [2.0, 0.0, 0.0] }")),
+        "A part of a rigid body is held": Case(('name = "plate"', 'name = "plate"\nrigid = true')),
+        "A mass of a body that deforms": Case(('name = "plate"', 'name = "plate"\nmass = 2.0')),
+        "A wall with a velocity and a displacement": Case(
+            ("normal = [0.0, 0.0, 1.0]", "normal = [0.0, 0.0, 1.0]\nvelocity = [0, 0, 1]\ndisplacement = [0, 0, 1]")),
+        "A curve of a wall that stands": Case(
+            ('set = "rim"', 'set = "rim"\n\n[[curve]]\nname = "ramp"\npoints = [[0, 0], [1, 1]]'),
+            ("normal = [0.0, 0.0, 1.0]", 'normal = [0.0, 0.0, 1.0]\ncurve = "ramp"')),
         "Copies in one place": Case(("translate = [0.0, 0.0, 0.15]", "translate = [0.0, 0.0, 0.15]\n"
                                      "array = { count = [2, 1, 1], pitch = [0.0, 0.0, 0.0] }")),
         "A curve that goes back in time": Case(('set = "rim"', 'set = "rim"\n\n[[curve]]\nname = "ramp"\n'

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/body_properties.hpp"
 #include "app/command.hpp"
 #include "app/findings_report.hpp"
 #include "app/load.hpp"
@@ -17,6 +16,7 @@
 #include "app/schedule.hpp"
 #include "app/trial.hpp"
 #include "io/vtkhdf_fields.hpp"
+#include "model/body_properties.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::app {
@@ -37,8 +37,8 @@ struct CheckOptions {
 /// All that the command tells.
 struct CheckReport {
   const Case& loaded;
-  std::vector<BodyProperties> bodies;
-  BodyProperties total;
+  std::vector<model::BodyProperties> bodies;
+  model::BodyProperties total;
   std::int64_t frames{};
   double results_bytes{};  ///< Of the results file, not compressed
   Trial trial;
@@ -66,9 +66,9 @@ double frame_bytes(const model::Model& model) {
 }
 
 CheckReport make_report(const Case& loaded, const std::vector<model::Mesh>& meshes) {
-  CheckReport report{loaded, {}, total_properties(loaded.model), 0, 0.0, {}, {}};
+  CheckReport report{loaded, {}, model::total_properties(loaded.model), 0, 0.0, {}, {}};
   for (Index b = 0; b < loaded.model.body_count(); ++b) {
-    report.bodies.push_back(body_properties(loaded.model, b));
+    report.bodies.push_back(model::body_properties(loaded.model, b));
   }
   const io::OutputSettings& output = loaded.deck.output;
   report.frames = Schedule(loaded.model.run.duration, output.results_interval, output.history_interval).frames();
@@ -80,7 +80,7 @@ CheckReport make_report(const Case& loaded, const std::vector<model::Mesh>& mesh
 
 std::string vector_text(const Vec3d& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
 
-std::string properties_text(const BodyProperties& p, const io::UnitNames& units) {
+std::string properties_text(const model::BodyProperties& p, const io::UnitNames& units) {
   const std::string length = units.of("length"), inertia = units.of("mass") + "*" + length + "^2";
   const auto& [xx, yy, zz, xy, yz, zx] = p.inertia;
   return fmt::format("    mass {:.6g} {}, centre {} {}\n", p.mass, units.of("mass"), vector_text(p.centre), length) +
@@ -101,7 +101,9 @@ std::string bodies_text(const CheckReport& report) {
   for (std::size_t b = 0; b < shown; ++b) {
     const model::Body& body = model.bodies[b];
     text += fmt::format("  body \"{}\": {} elements, {} nodes{}\n", body.name, body.elements.size(), body.nodes.size(),
-                        body.barrier ? ", fixed" : "");
+                        body.barrier             ? ", fixed"
+                        : body.rigid != no_index ? ", rigid"
+                                                 : "");
     text += properties_text(report.bodies[b], report.loaded.deck.units);
   }
   if (shown < model.bodies.size()) {
@@ -130,7 +132,7 @@ std::string report_text(const CheckReport& report) {
   return text + findings_text(report.findings);
 }
 
-nlohmann::ordered_json properties_json(const BodyProperties& p) {
+nlohmann::ordered_json properties_json(const model::BodyProperties& p) {
   const auto array = [](const Vec3d& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); };
   return {{"mass", p.mass},
           {"centre", array(p.centre)},
@@ -146,7 +148,8 @@ nlohmann::ordered_json report_json(const CheckReport& report) {
     nlohmann::ordered_json body = {{"name", model.bodies[b].name},
                                    {"elements", model.bodies[b].elements.size()},
                                    {"nodes", model.bodies[b].nodes.size()},
-                                   {"barrier", model.bodies[b].barrier}};
+                                   {"barrier", model.bodies[b].barrier},
+                                   {"rigid", model.bodies[b].rigid != no_index}};
     body.update(properties_json(report.bodies[b]));
     bodies.push_back(std::move(body));
   }

@@ -52,10 +52,10 @@ std::vector<Column> steps_columns(const io::UnitNames& units) {
   return columns;
 }
 
-std::vector<Column> planes_columns(const io::UnitNames& units, const model::Model& model) {
+std::vector<Column> walls_columns(const io::UnitNames& units, const model::Model& model) {
   std::vector<Column> columns = first_columns(units);
-  for (const model::RigidPlane& plane : model.planes) {
-    io::add_vector_columns(columns, plane.name, units.of("force"));
+  for (const model::Wall& wall : model.walls) {
+    io::add_vector_columns(columns, wall.name, units.of("force"));
   }
   return columns;
 }
@@ -135,8 +135,8 @@ Histories::Histories(const io::RunDirectory& directory, const Case& loaded, cons
       chosen_.push_back(b);
     }
   }
-  if (!model_.planes.empty()) {
-    planes_ = open(directory.history("planes"), planes_columns(units, model_), mark);
+  if (!model_.walls.empty()) {
+    walls_ = open(directory.history("planes"), walls_columns(units, model_), mark);
   }
   if (!sets_.empty()) {
     nodes_ = open(directory.history("nodes"), nodes_columns(units), mark);
@@ -180,7 +180,7 @@ void Histories::write(const cluster::Simulation& simulation, const cluster::Epoc
   write_energies(simulation, report);
   write_momenta(simulation, report);
   write_steps(simulation, report);
-  write_planes(simulation);
+  write_walls(simulation);
   write_nodes(simulation);
   write_bodies(simulation);
 }
@@ -210,19 +210,19 @@ void Histories::write_steps(const cluster::Simulation& simulation, const cluster
   deepest_ = 0.0;
 }
 
-void Histories::write_planes(const cluster::Simulation& simulation) {
-  if (!planes_) {
+void Histories::write_walls(const cluster::Simulation& simulation) {
+  if (!walls_) {
     return;
   }
   std::vector<Cell> cells = first_cells(simulation.state());
-  for (std::size_t p = 0; p < model_.planes.size(); ++p) {
+  for (std::size_t w = 0; w < model_.walls.size(); ++w) {
     Vec3d force;
     for (const solve::BodyActions& actions : simulation.workspace().actions) {
-      force += actions.plane_force[p];
+      force += actions.wall_force[w];
     }
     io::add_vector_cells(cells, force);
   }
-  planes_->row(cells);
+  walls_->row(cells);
 }
 
 void Histories::write_nodes(const cluster::Simulation& simulation) {
@@ -264,7 +264,7 @@ void Histories::write_bodies(const cluster::Simulation& simulation) {
 
 std::vector<io::CsvWriter*> Histories::files() {
   std::vector<io::CsvWriter*> all{&energies_, &momenta_, &steps_};
-  for (std::optional<io::CsvWriter>* file : {&planes_, &nodes_, &bodies_}) {
+  for (std::optional<io::CsvWriter>* file : {&walls_, &nodes_, &bodies_}) {
     if (*file) {
       all.push_back(&**file);
     }

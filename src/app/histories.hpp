@@ -14,7 +14,7 @@
 namespace fexp::app {
 
 /// The run's CSV files: energies, momenta and steps of the whole model, and where the deck asks for them forces of
-/// rigid planes, motions of nodes and of bodies. Every row begins with step and time.
+/// rigid walls, motions of nodes and of bodies. Every row begins with step and time.
 class Histories {
  public:
   /// Creates the files, or goes on where `mark` says.
@@ -38,7 +38,7 @@ class Histories {
   void write_energies(const cluster::Simulation& simulation, const cluster::EpochReport& report);
   void write_momenta(const cluster::Simulation& simulation, const cluster::EpochReport& report);
   void write_steps(const cluster::Simulation& simulation, const cluster::EpochReport& report);
-  void write_planes(const cluster::Simulation& simulation);
+  void write_walls(const cluster::Simulation& simulation);
   void write_nodes(const cluster::Simulation& simulation);
   void write_bodies(const cluster::Simulation& simulation);
   [[nodiscard]] std::vector<io::CsvWriter*> files();
@@ -47,7 +47,7 @@ class Histories {
   io::CsvWriter energies_;
   io::CsvWriter momenta_;
   io::CsvWriter steps_;
-  std::optional<io::CsvWriter> planes_;
+  std::optional<io::CsvWriter> walls_;
   std::optional<io::CsvWriter> nodes_;
   std::optional<io::CsvWriter> bodies_;
   std::vector<const model::NamedNodes*> sets_;  ///< Whose nodes are written

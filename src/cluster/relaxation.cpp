@@ -68,6 +68,7 @@ double end_of_curves(const model::Model& model) {
   std::ranges::for_each(model.forces, include, &model::NodeLoad::curve);
   std::ranges::for_each(model.pressure, include, &model::PressureLoad::curve);
   std::ranges::for_each(model.prescribed, include, &model::PrescribedNode::curve);
+  std::ranges::for_each(model.walls, include, &model::Wall::curve);
   return end;
 }
 

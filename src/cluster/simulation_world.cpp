@@ -167,11 +167,11 @@ void Simulation::take_up_solvers(std::vector<Island> islands) {
   }
 }
 
-/// Tells all ranks this rank's record, the cost of its islands, and notices and plane forces of its bodies, in one
+/// Tells all ranks this rank's record, the cost of its islands, and notices and wall forces of its bodies, in one
 /// message; returns what all records come to.
 RankRecord Simulation::share(const RankRecord& own, std::span<const double> island_seconds) {
-  const std::size_t planes = model_.planes.size();
-  const std::size_t body_bytes = sizeof(BodyNotice) + planes * sizeof(Vec3d);
+  const std::size_t walls = model_.walls.size();
+  const std::size_t body_bytes = sizeof(BodyNotice) + walls * sizeof(Vec3d);
   std::vector<std::size_t> sizes(static_cast<std::size_t>(world_.communicator->size()), sizeof(RankRecord));
   for (const Island& island : islands_) {
     sizes[static_cast<std::size_t>(rank_of(island.bodies.front()))] +=
@@ -194,7 +194,7 @@ RankRecord Simulation::share(const RankRecord& own, std::span<const double> isla
       out.value(island_seconds[i]);
       for (const Index body : islands_[i].bodies) {
         out.value(notices_[at(body)]);
-        for (const Vec3d& force : workspace_.actions[at(body)].plane_force) {
+        for (const Vec3d& force : workspace_.actions[at(body)].wall_force) {
           out.value(force);
         }
       }
@@ -233,13 +233,13 @@ RankRecord Simulation::share(const RankRecord& own, std::span<const double> isla
   return sum;
 }
 
-/// Costs of the islands of one rank, and notices and plane forces of their bodies.
+/// Costs of the islands of one rank, and notices and wall forces of their bodies.
 void Simulation::take_in(std::span<const std::size_t> islands, ByteReader& in) {
   for (const std::size_t i : islands) {
     island_cost_[i] = in.value<double>();
     for (const Index body : islands_[i].bodies) {
       notices_[at(body)] = in.value<BodyNotice>();
-      for (Vec3d& force : workspace_.actions[at(body)].plane_force) {
+      for (Vec3d& force : workspace_.actions[at(body)].wall_force) {
         force = in.value<Vec3d>();
       }
     }

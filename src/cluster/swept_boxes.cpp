@@ -42,19 +42,25 @@ double largest_slope(const model::Model& model, Index curve) {
 /// Largest speed that prescribed motion can give a node of the body within `span`, besides the one it has
 /// [length/time].
 double prescribed_speed(const model::Model& model, const model::Body& body, double span) {
-  double largest = 0.0;
+  const auto rate_of = [&](const model::PrescribedNode& p) {
+    return std::abs(p.value) * (p.kind == model::PrescribedKind::displacement   ? largest_slope(model, p.curve)
+                                : p.kind == model::PrescribedKind::acceleration ? largest_value(model, p.curve) * span
+                                                                                : largest_value(model, p.curve));
+  };
+  double translation = 0.0, turn = 0.0;
   for (Index i = body.prescribed.begin; i < body.prescribed.end; ++i) {
     const model::PrescribedNode& p = model.prescribed[at(i)];
-    if (p.dof >= 3) {
-      continue;
-    }
-    const double rate = p.kind == model::PrescribedKind::displacement   ? largest_slope(model, p.curve)
-                        : p.kind == model::PrescribedKind::acceleration ? largest_value(model, p.curve) * span
-                                                                        : largest_value(model, p.curve);
-    largest = std::max(largest, std::abs(p.value) * rate);
+    translation = p.angular() ? translation : std::max(translation, rate_of(p));
   }
-  // Up to three components of a node may be prescribed.
-  return std::sqrt(3.0) * largest;
+  if (body.rigid != no_index) {
+    const model::RigidBody& rigid = model.rigid_bodies[at(body.rigid)];
+    for (const model::PrescribedNode& p : rigid.prescribed) {
+      double& largest = p.angular() ? turn : translation;
+      largest = std::max(largest, p.angular() ? rigid.radius * rate_of(p) : rate_of(p));
+    }
+  }
+  // Up to three components of each may be prescribed.
+  return std::sqrt(3.0) * (translation + turn);
 }
 
 double largest_edge(const Box& box) {

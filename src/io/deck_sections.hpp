@@ -35,7 +35,14 @@ void for_each_section(SomeDeck& deck, Visitor& visitor) {
   visitor.list("pressure", "A pressure on faces.", optional, d.pressure);
   visitor.list("force", "Forces and moments on nodes.", optional, d.forces);
   visitor.list("point_mass", "Masses on nodes, besides those of the shells.", optional, d.point_masses);
-  visitor.list("plane", "A rigid plane that nodes cannot pass.", optional, d.planes);
+  visitor.list(
+      "plane",
+      "A rigid wall that nodes cannot pass: a plane. Walls stand, or move as told whatever touches them; a wall "
+      "with a mass is a body with `rigid = true`.",
+      optional, d.planes);
+  visitor.list("cylinder", "A rigid wall that nodes cannot pass: an endless cylinder, from outside or inside.",
+               optional, d.cylinders);
+  visitor.list("sphere", "A rigid wall that nodes cannot pass: a sphere, from outside or inside.", optional, d.spheres);
   visitor.table("contact", "Contact between bodies, and of each with itself; on unless switched off.", optional,
                 d.contact);
   visitor.table("output", "What to write and how often. Frames and rows stand at the start and the end, too.", optional,

@@ -30,7 +30,7 @@ constexpr std::array fields{
     at_nodes<&Frame::displacement>("displacement", "length", "Position less reference position"),
     at_nodes<&Frame::velocity>("velocity", "length/time", "Velocity"),
     at_nodes<&Frame::rotation_rate>("rotation_rate", "1/time", "Angular velocity"),
-    at_nodes<&Frame::contact_force>("contact_force", "force", "Force from contact with shells, without rigid planes"),
+    at_nodes<&Frame::contact_force>("contact_force", "force", "Force from contact with shells, without rigid walls"),
     at_elements<&Frame::membrane_force>("membrane_force", 3, "force/length", "Membrane resultants nxx nyy nxy"),
     at_elements<&Frame::bending_moment>("bending_moment", 3, "force", "Bending resultants mxx myy mxy"),
     at_elements<&Frame::shear_force>("shear_force", 2, "force/length", "Transverse shear resultants qxz qyz"),

@@ -9,6 +9,7 @@
 
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
+#include "model/build_rigid.hpp"
 #include "model/element_shares.hpp"
 #include "model/node_sets.hpp"
 #include "model/topology.hpp"
@@ -57,6 +58,41 @@ void build_sections(const Description& description, Model& model) {
   }
 }
 
+/// What all shapes of walls have.
+template <class RigidWall>
+Wall wall_of(const RigidWall& given, WallShape shape, const Vec3d& point, const Vec3d& direction, const Model& model) {
+  Wall wall;
+  wall.name = given.name;
+  wall.shape = shape;
+  wall.point = point;
+  wall.direction = shape == WallShape::sphere ? Vec3d{} : (1.0 / norm(direction)) * direction;
+  wall.stiffness = given.stiffness;
+  const bool displaced = given.displacement != Vec3d{};
+  wall.moves = displaced || given.velocity != Vec3d{};
+  wall.kind = displaced ? PrescribedKind::displacement : PrescribedKind::velocity;
+  wall.motion = displaced ? given.displacement : given.velocity;
+  for (std::size_t i = 0; i < model.curves.size(); ++i) {
+    wall.curve = model.curves[i].name == given.curve ? static_cast<Index>(i) : wall.curve;
+  }
+  return wall;
+}
+
+void build_walls(const Description& description, Model& model) {
+  for (const RigidPlane& plane : description.planes) {
+    model.walls.push_back(wall_of(plane, WallShape::plane, plane.point, plane.normal, model));
+  }
+  for (const RigidCylinder& cylinder : description.cylinders) {
+    Wall& wall = model.walls.emplace_back(wall_of(cylinder, WallShape::cylinder, cylinder.point, cylinder.axis, model));
+    wall.radius = cylinder.radius;
+    wall.inside = cylinder.inside;
+  }
+  for (const RigidSphere& sphere : description.spheres) {
+    Wall& wall = model.walls.emplace_back(wall_of(sphere, WallShape::sphere, sphere.centre, {}, model));
+    wall.radius = sphere.radius;
+    wall.inside = sphere.inside;
+  }
+}
+
 /// Gives every block of a layered section its rows of State::layers.
 void place_layers(Model& model) {
   Index row = 0;
@@ -64,6 +100,30 @@ void place_layers(Model& model) {
     const Index rows = model.sections[at(block.section)].layer_rows();
     block.layer_row = rows > 0 ? row : no_index;
     row += rows;
+  }
+}
+
+/// Gives the elements of rigid bodies whose mass is given the density for it, and takes all of them out of the search
+/// for the smallest step, unless there are no others: then they stand for what the penalty stiffness of contact has to
+/// go by.
+void make_rigid(const Description& description, Model& model, ElementShares& shares) {
+  const auto is_rigid = [&](const Body& body) { return description.bodies[at(body.description)].rigid; };
+  const bool all_rigid = std::all_of(model.bodies.begin(), model.bodies.end(), is_rigid);
+  for (Body& body : model.bodies) {
+    if (!is_rigid(body)) {
+      continue;
+    }
+    const double given = description.bodies[at(body.description)].mass;
+    double sum = 0.0;
+    for (Index e = body.elements.begin; e < body.elements.end; ++e) {
+      sum += 3.0 * shares.mass[at(e)];
+    }
+    body.density_factor = given > 0.0 ? given / sum : 1.0;
+    for (Index e = body.elements.begin; e < body.elements.end; ++e) {
+      shares.mass[at(e)] *= body.density_factor;
+      shares.inertia[at(e)] *= body.density_factor;
+      shares.step[at(e)] = all_rigid ? std::sqrt(body.density_factor) * shares.step[at(e)] : HUGE_VAL;
+    }
   }
 }
 
@@ -87,10 +147,11 @@ void scale_masses(Model& model, ElementShares& shares) {
 }
 
 /// Lumped masses and inertias, areas, half thicknesses and penalty stiffnesses; each node gathers its own corners.
-void build_masses(Model& model) {
+void build_masses(const Description& description, Model& model) {
   const std::size_t elements = model.triangle.size(), nodes = model.reference_position.size();
   ElementShares shares = element_shares(model);
   model.reference_area = std::move(shares.area);
+  make_rigid(description, model, shares);
   scale_masses(model, shares);
   model.first_critical_step = HUGE_VAL;
   for (std::size_t e = 0; e < elements; ++e) {
@@ -139,10 +200,7 @@ void build_velocities(const Description& description, Model& model) {
   parallel::for_each(model.body_count(), 1, [&](Index index) {
     const Body& body = model.bodies[at(index)];
     const BodyDescription& given = description.bodies[at(body.description)];
-    Vec3d centre;
-    for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
-      centre += (model.mass[at(n)] / body.mass) * model.reference_position[at(n)];
-    }
+    const Vec3d centre = centre_of_mass(model, body);
     parallel::for_each(body.nodes.size(), 4096, [&](Index i) {
       const std::size_t n = at(body.nodes.begin + i);
       model.initial_velocity[n] = given.velocity + cross(given.angular_velocity, model.reference_position[n] - centre);
@@ -192,6 +250,9 @@ void build_exclusions(const Description& description, Model& model, ErrorList& e
       }
     }
   }
+  for (const RigidBody& rigid : model.rigid_bodies) {  // Its parts keep their distances.
+    model.excluded_pairs.emplace_back(rigid.body, rigid.body);
+  }
   std::sort(model.excluded_pairs.begin(), model.excluded_pairs.end());
   model.excluded_pairs.erase(std::unique(model.excluded_pairs.begin(), model.excluded_pairs.end()),
                              model.excluded_pairs.end());
@@ -207,10 +268,7 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   model.contact = description.contact;
   model.curves = description.curves;
   build_curve_areas(model);
-  model.planes = description.planes;
-  for (RigidPlane& plane : model.planes) {
-    plane.normal = (1.0 / norm(plane.normal)) * plane.normal;
-  }
+  build_walls(description, model);
   build_sections(description, model);
   const auto groups = build_bodies(description, meshes, model, errors);
   if (!errors.empty()) {
@@ -222,9 +280,10 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   model.corner = std::move(rows.corner);
   build_node_sets(description, groups, model, errors);
   build_point_masses(description, model);
-  build_masses(model);
+  build_masses(description, model);
   check_masses(description, model, errors);
   build_velocities(description, model);
+  build_rigid_bodies(description, model);
   build_exclusions(description, model, errors);
   build_conditions(description, meshes, model, errors);
   return model;

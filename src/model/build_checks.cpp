@@ -7,40 +7,15 @@
 #include <cmath>
 #include <set>
 
+#include "model/check_tools.hpp"
+#include "model/wall_checks.hpp"
+
 namespace fexp::model {
 
 namespace {
 
-bool has_direction(const Vec3d& v) {
-  const double length = norm(v);
-  return length > 0.0 && std::isfinite(length);
-}
-
-template <class Named>
-std::vector<std::string> names_of(const std::vector<Named>& items) {
-  std::vector<std::string> names;
-  for (const Named& item : items) {
-    names.push_back(item.name);
-  }
-  return names;
-}
-
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-/// Every name is given once and is not empty; `reserved` counts as given.
-template <class Named>
-void check_names(std::string_view kind, const std::vector<Named>& items, std::set<std::string> reserved,
-                 ErrorList& errors) {
-  for (const Named& item : items) {
-    if (item.name.empty()) {
-      errors.add(item.place, fmt::format("this {} has no name", kind), "a name of its own", "give it a name");
-    } else if (!reserved.insert(item.name).second) {
-      errors.add(item.place, fmt::format("the name \"{}\" is already that of another {}", item.name, kind),
-                 "a name of its own", "rename one of them");
-    }
-  }
 }
 
 void check_curve(const Curve& curve, ErrorList& errors) {
@@ -211,7 +186,7 @@ void check_axes(const std::optional<LocalAxes>& axes, const std::string& set, co
   }
 }
 
-/// One motion, and a displacement that does not jump, as that would take a boundless speed.
+/// One motion.
 void check_prescribed(const Prescribed& p, const std::vector<Curve>& curves, ErrorList& errors) {
   check_dof(p.dof, p.place, errors);
   check_axes(p.axes, p.set, p.place, errors);
@@ -221,27 +196,8 @@ void check_prescribed(const Prescribed& p, const std::vector<Curve>& curves, Err
                fmt::format("set \"{}\" is given {} prescribed motions for one degree of freedom", p.set, given),
                "one of velocity, displacement and acceleration", given == 0 ? "add one of them" : "keep one of them");
   }
-  const auto curve =
-      std::find_if(curves.begin(), curves.end(), [&](const Curve& candidate) { return candidate.name == p.curve; });
-  if (!p.displacement || (curve == curves.end() && !p.curve.empty()) ||
-      (curve != curves.end() && curve->points.empty())) {
-    return;
-  }
-  double start = 1.0;
-  bool jumps = false;
-  if (curve != curves.end()) {
-    const auto& points = curve->points;
-    start = value_of(*curve, 0.0);
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      jumps = jumps || points[i][0] == points[i - 1][0];
-    }
-  }
-  if (start != 0.0 || jumps) {
-    errors.add(p.place,
-               start != 0.0
-                   ? fmt::format("the displacement of set \"{}\" is {:g} times its size at the start", p.set, start)
-                   : fmt::format("the displacement of set \"{}\" jumps", p.set),
-               "a curve that is 0 at time 0 and has no time twice", "let the displacement grow from zero by its curve");
+  if (p.displacement) {
+    check_displacement(fmt::format("set \"{}\"", p.set), p.curve, curves, p.place, errors);
   }
 }
 
@@ -306,7 +262,7 @@ void check_description(const Description& description, ErrorList& errors) {
   check_names("section", description.sections, {}, errors);
   check_names("body", description.bodies, {}, errors);
   check_names("node set", description.node_sets, {"all"}, errors);
-  check_names("plane", description.planes, {}, errors);
+  check_walls(description, errors);
 
   const std::vector<std::string> materials = names_of(description.materials);
   const std::vector<std::string> sections = names_of(description.sections);
@@ -326,6 +282,10 @@ void check_description(const Description& description, ErrorList& errors) {
   for (const BodyDescription& body : description.bodies) {
     check_body_sections(body, sections, errors);
     check_placement(body, errors);
+    if (body.mass > 0.0 && !body.rigid) {
+      errors.add(body.place, fmt::format("body \"{}\" is given a mass and is not rigid", body.name),
+                 "mass with rigid = true only", "set rigid, or give the density of its material");
+    }
   }
   for (const Fixed& fixed : description.fixed) {
     check_axes(fixed.axes, fixed.set, fixed.place, errors);
@@ -347,12 +307,6 @@ void check_description(const Description& description, ErrorList& errors) {
                  "correct the normal");
     }
   }
-  for (const RigidPlane& plane : description.planes) {
-    if (!has_direction(plane.normal)) {
-      errors.add(plane.place, fmt::format("the normal of plane \"{}\" has no direction", plane.name),
-                 "a vector that is not zero", "correct the normal");
-    }
-  }
   ReferenceChecks references(description, errors);
   references(description.fixed);
   references(description.prescribed);
@@ -361,6 +315,9 @@ void check_description(const Description& description, ErrorList& errors) {
   references(description.pressure);
   references(description.forces);
   references(description.point_masses);
+  references(description.planes);
+  references(description.cylinders);
+  references(description.spheres);
 }
 
 void check_symmetry(const Description& description, const Model& model, ErrorList& errors) {

@@ -8,6 +8,7 @@
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
 #include "model/build_loads.hpp"
+#include "model/build_rigid.hpp"
 #include "model/held_directions.hpp"
 
 namespace fexp::model {
@@ -214,6 +215,7 @@ void build_conditions(const Description& description, std::span<const Mesh> mesh
   build_loads(description, lookup, model);
   build_pressure(description, meshes, lookup, model, errors);
   check_symmetry(description, model, errors);
+  build_rigid_conditions(description, lookup, model, errors);
 
   const auto node_of = [](const auto& item) { return item.node; };
   constexpr unsigned every_dof = 0x3FU;

@@ -1,23 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/held_directions.hpp"
 
-#include <algorithm>
-
 namespace fexp::model {
 
 namespace {
 
 constexpr std::array<Vec3d, 3> model_axes{Vec3d{1.0, 0.0, 0.0}, Vec3d{0.0, 1.0, 0.0}, Vec3d{0.0, 0.0, 1.0}};
-
-/// Calls visit for every item of a sorted list that is at the node.
-template <class Item, class Visit>
-void for_each_at(const std::vector<Item>& items, Index node, const Visit& visit) {
-  const auto before = [](const Item& item, Index n) { return item.node < n; };
-  for (auto item = std::lower_bound(items.begin(), items.end(), node, before);
-       item != items.end() && item->node == node; ++item) {
-    visit(*item);
-  }
-}
 
 }  // namespace
 

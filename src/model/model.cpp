@@ -13,6 +13,14 @@ bool Model::can_touch(Index a, Index b) const noexcept {
          !std::binary_search(excluded_pairs.begin(), excluded_pairs.end(), std::pair{std::min(a, b), std::max(a, b)});
 }
 
+Vec3d centre_of_mass(const Model& model, const Body& body) {
+  Vec3d centre;
+  for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
+    centre += (model.mass[at(n)] / body.mass) * model.reference_position[at(n)];
+  }
+  return centre;
+}
+
 namespace {
 
 using Points = std::vector<std::array<double, 2>>;

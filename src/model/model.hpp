@@ -58,6 +58,9 @@ struct Body {
   IndexRange forces;      ///< Into Model::forces.
   bool barrier{};         ///< Every node is held in all degrees of freedom: part of every island, joins none.
   double mass{};          ///< [mass]
+  Index rigid{no_index};  ///< Into Model::rigid_bodies; no_index when the body deforms.
+  /// Density of the elements over that of their material; not 1 in a rigid body whose mass is given.
+  double density_factor{1.0};
 };
 
 /// Degrees of freedom of one node held at rest; bit d is degree of freedom d (x y z rx ry rz).
@@ -76,6 +79,8 @@ struct ObliqueNode {
 /// What of a motion is prescribed.
 enum class PrescribedKind : std::uint8_t { velocity, displacement, acceleration };
 
+/// A motion that is prescribed at a node; in RigidBody::prescribed that of the whole body, of which it names the first
+/// node.
 struct PrescribedNode {
   Index node{};
   std::int8_t dof{};  ///< 0..5: translations from 0, rotations from 3
@@ -84,6 +89,28 @@ struct PrescribedNode {
   double value{};  ///< Times the curve [length/time^k] or [1/time^k], k = 1, 0, 2 by kind
   Index curve{no_index};
   Vec3d direction{};  ///< Unit vector
+
+  [[nodiscard]] bool angular() const noexcept { return dof >= 3; }
+};
+
+/// A body that moves with six degrees of freedom: translations of its centre of mass, and its rotation.
+struct RigidBody {
+  Index body{};
+  double mass{};                    ///< [mass]
+  Vec3d centre;                     ///< Of mass, in the reference configuration [length]
+  std::array<double, 3> inertia{};  ///< Principal moments about the centre, ascending [mass*length^2]
+  std::array<Vec3d, 3> axis{};      ///< Principal axes in the reference configuration, a right-handed frame
+  double radius{};                  ///< Of the farthest node from the centre [length]
+  /// Largest ratio of the inertia of the nodes' masses to that of the body, >= 1: penalty springs, whose bound of
+  /// omega^2 is made for the masses of nodes, may be stiffer on the body by this factor.
+  double inertia_ratio{1.0};
+  Vec3d initial_velocity;                  ///< [length/time]
+  Vec3d initial_rotation_rate;             ///< [1/time]
+  std::vector<Vec3d> held;                 ///< Orthogonal unit vectors along which the centre does not move
+  std::vector<Vec3d> held_rotations;       ///< Orthogonal unit vectors about which the body does not turn
+  std::vector<PrescribedNode> prescribed;  ///< Orthogonal to what is held and to each other
+  bool turns_freely{true};                 ///< No rotation is held or prescribed
+  bool prescribes_rotation{};
 };
 
 struct SymmetryNode {
@@ -113,6 +140,23 @@ struct AddedNode {
 
 struct GravityLoad {
   Vec3d acceleration{};  ///< [length/time^2]
+  Index curve{no_index};
+};
+
+enum class WallShape : std::uint8_t { plane, cylinder, sphere };
+
+/// A surface that nodes do not pass.
+struct Wall {
+  std::string name;
+  WallShape shape{};
+  Vec3d point{};           ///< Of a plane, of the axis of a cylinder, or the centre, at time zero [length]
+  Vec3d direction{};       ///< Unit vector: normal of a plane, towards the free side, or axis of a cylinder
+  double radius{};         ///< [length]
+  bool inside{};           ///< Of cylinders and spheres: nodes stay inside.
+  double stiffness{-1.0};  ///< Penalty stiffness per node [force/length]; negative: that of the node
+  bool moves{};
+  PrescribedKind kind{};  ///< Velocity or displacement
+  Vec3d motion{};         ///< Times the curve [length/time] or [length]
   Index curve{no_index};
 };
 
@@ -153,6 +197,7 @@ struct Model {
   std::vector<ElementBlock> blocks;
   std::vector<SectionData> sections;
   std::vector<Body> bodies;
+  std::vector<RigidBody> rigid_bodies;               ///< In order of bodies
   std::vector<std::vector<std::string>> part_names;  ///< Of the described bodies' meshes, by element_part
 
   // Conditions and loads, each sorted by node or element; a body's own lie in the ranges its Body names.
@@ -166,7 +211,7 @@ struct Model {
   std::vector<AddedNode> point_masses;
   std::vector<Curve> curves;
   std::vector<std::vector<double>> curve_areas;  ///< Integral of each curve from its first point to each of them [time]
-  std::vector<RigidPlane> planes;                ///< Normals are unit vectors.
+  std::vector<Wall> walls;                       ///< Planes, cylinders and spheres of the deck
   std::vector<NamedNodes> node_sets;
 
   bool plastic{};   ///< Some section has points through its thickness.
@@ -192,6 +237,9 @@ struct Model {
   /// True when bodies a and b (which may be the same) can touch by the deck's contact settings.
   [[nodiscard]] bool can_touch(Index a, Index b) const noexcept;
 };
+
+/// Centre of the masses of a body's nodes in the reference configuration [length].
+[[nodiscard]] Vec3d centre_of_mass(const Model& model, const Body& body);
 
 /// How far beyond contact distance a node's side of a triangle is remembered [length], from the size of its elements. A
 /// step carries a node by v dt, which is less than this part of its elements at any speed below a tenth of that of

@@ -50,6 +50,7 @@ class Reader {
 // Records of doubles alone have no padding and are copied whole.
 static_assert(sizeof(NodeMotion) == 9 * sizeof(double) && sizeof(NodeAcceleration) == 6 * sizeof(double));
 static_assert(sizeof(BodyLedger) == 11 * sizeof(double));
+static_assert(sizeof(RigidMotion) == 19 * sizeof(double));
 
 std::size_t row_offset(Index block, Index row) { return (at(block) * element_rows + at(row)) * at(block_lanes); }
 
@@ -81,7 +82,8 @@ std::size_t bytes_before_sides(const Model& model, const Body& body) {
     const ElementBlock& block = model.blocks[at(b)];
     numbers += at(block.count) * at(element_rows + layer_rows(model, block));
   }
-  return at(body.nodes.size()) * (sizeof(NodeMotion) + sizeof(NodeAcceleration)) + numbers * sizeof(double);
+  return at(body.nodes.size()) * (sizeof(NodeMotion) + sizeof(NodeAcceleration)) + numbers * sizeof(double) +
+         (body.rigid == no_index ? 0 : sizeof(RigidMotion));
 }
 
 /// `sides`: of both kinds together.
@@ -193,6 +195,19 @@ State initial_state(const Model& model) {
                   model.sections[at(block.section)].thickness);
     }
   }
+  for (const RigidBody& rigid : model.rigid_bodies) {
+    RigidMotion& motion = state.rigid.emplace_back();
+    motion.centre = rigid.centre;
+    motion.velocity = rigid.initial_velocity;
+    motion.angular_momentum = inertia_times(rigid, rigid.initial_rotation_rate);
+    const IndexRange nodes = model.bodies[at(rigid.body)].nodes;
+    const Vec3d rate = rotation_rate(rigid, motion);
+    for (Index n = nodes.begin; n < nodes.end; ++n) {
+      NodeMotion& node = state.motion[at(n)];
+      node.velocity = velocity_at(motion, rate, node.position);
+      node.rotation_rate = rate;
+    }
+  }
   state.sides.resize(model.bodies.size());
   state.edge_sides.resize(model.bodies.size());
   state.ledger.resize(model.bodies.size());
@@ -215,15 +230,18 @@ void copy_body(const Model& model, const State& from, Index body, State& to) {
       copy(from.layers, to.layers, first, first + at(layer_rows(model, block)) * at(block_lanes));
     }
   }
+  if (owner.rigid != no_index) {
+    to.rigid[at(owner.rigid)] = from.rigid[at(owner.rigid)];
+  }
   to.sides[at(body)] = from.sides[at(body)];
   to.edge_sides[at(body)] = from.edge_sides[at(body)];
   to.ledger[at(body)] = from.ledger[at(body)];
 }
 
 // Order: motion of the nodes (x, v, omega), their accelerations (a, alpha), rows of the elements and of their layers
-// block by block (used lanes only), the numbers of sides of nodes and of edges (64 bits each), the sides of nodes
-// (node, element, side: 32, 32 and 8 bits, drag), those of edges (first, second, side, drag), the ledger. All numbers
-// are little-endian and stand side by side.
+// block by block (used lanes only), the motion of a rigid body, the numbers of sides of nodes and of edges (64 bits
+// each), the sides of nodes (node, element, side: 32, 32 and 8 bits, drag), those of edges (first, second, side, drag),
+// the ledger. All numbers are little-endian and stand side by side.
 void append_body_bytes(const Model& model, const State& state, Index body, std::vector<std::byte>& bytes) {
   const Body& owner = model.bodies[at(body)];
   const std::vector<ContactSide>& sides = state.sides[at(body)];
@@ -234,6 +252,9 @@ void append_body_bytes(const Model& model, const State& state, Index body, std::
   writer.write(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));
   writer.write(state.acceleration.data() + owner.nodes.begin, at(owner.nodes.size()));
   for_each_row(model, owner, state, [&](const double* row, std::size_t count) { writer.write(row, count); });
+  if (owner.rigid != no_index) {
+    writer.write(&state.rigid[at(owner.rigid)], 1);
+  }
   const std::array<std::int64_t, 2> counts{static_cast<std::int64_t>(sides.size()),
                                            static_cast<std::int64_t>(edge_sides.size())};
   writer.write(counts.data(), counts.size());
@@ -270,6 +291,9 @@ bool read_body_bytes(const Model& model, std::span<const std::byte> bytes, Index
   reader.read(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));
   reader.read(state.acceleration.data() + owner.nodes.begin, at(owner.nodes.size()));
   for_each_row(model, owner, state, [&](double* row, std::size_t lanes) { reader.read(row, lanes); });
+  if (owner.rigid != no_index) {
+    reader.read(&state.rigid[at(owner.rigid)], 1);
+  }
   return true;
 }
 

@@ -10,6 +10,7 @@
 #include "base/index.hpp"
 #include "base/vec3.hpp"
 #include "model/model.hpp"
+#include "model/rigid_motion.hpp"
 
 namespace fexp::model {
 
@@ -71,8 +72,8 @@ struct BodyLedger {
   double damping_work{};         ///< Work taken out by damping (>= 0) [force*length], integrated
   double contact_energy{};       ///< Potential of the pairs that are booked to this body [force*length]
   double contact_dissipation{};  ///< What friction and damping of contact have taken (>= 0) [force*length], integrated
-  double barrier_energy{};       ///< Potential of rigid planes [force*length]
-  Vec3d external_impulse{};      ///< Loads, planes, damping and constraints [force*time], integrated
+  double barrier_energy{};       ///< Potential of rigid walls [force*length]
+  Vec3d external_impulse{};      ///< Loads, walls, damping and constraints [force*time], integrated
   Vec3d external_angular_impulse{};  ///< The same about the origin [force*length*time], integrated
 };
 
@@ -84,11 +85,12 @@ struct State {
   AlignedVector<NodeAcceleration> acceleration;   // [nodes]
   AlignedVector<double> history;                  // [blocks][element_rows][block_lanes]
   AlignedVector<double> layers;                   // [layered blocks][physics::layer_rows][block_lanes]
+  std::vector<RigidMotion> rigid;                 // [rigid bodies]; the motion of their nodes follows from it
   std::vector<std::vector<ContactSide>> sides;    // [bodies]: sorted by (node, element); the body's nodes, and
                                                   // barriers' nodes with its elements
   std::vector<std::vector<EdgeSide>> edge_sides;  // [bodies]: sorted by (first, second); the first edge is the body's,
                                                   // or the second where the first is a barrier's
-  std::vector<BodyLedger> ledger;  // [bodies]
+  std::vector<BodyLedger> ledger;                 // [bodies]
 };
 
 /// State at time zero: reference positions, initial velocities as far as fixed nodes and planes of symmetry allow, no

@@ -17,30 +17,6 @@ auto* component(Vector& v, int dof) noexcept {
   }
 }
 
-/// The velocity that a condition asks for at the end of a half step. A displacement asks for the one that leads to it
-/// by the end of the step: from where the node is, so that nothing adds up; rotations, which are not stored, by the
-/// curve's difference. At the end of a step its velocity is the slope of the curve.
-double prescribed_velocity(const model::Model& model, const model::PrescribedNode& p, const Vec3d& position,
-                           HalfStep half, double time, double half_dt) {
-  switch (p.kind) {
-    case model::PrescribedKind::velocity:
-      return curve_value(model, p.curve, time) * p.value;
-    case model::PrescribedKind::acceleration: {
-      const Vec3d& start = p.dof < 3 ? model.initial_velocity[at(p.node)] : model.initial_rotation_rate[at(p.node)];
-      return dot(start, p.direction) + curve_integral(model, p.curve, time) * p.value;
-    }
-    case model::PrescribedKind::displacement:
-      break;
-  }
-  if (half == HalfStep::closing) {
-    return curve_slope(model, p.curve, time) * p.value;
-  }
-  const double goal = curve_value(model, p.curve, time + half_dt) * p.value;
-  const double reached = p.dof < 3 ? dot(position - model.reference_position[at(p.node)], p.direction)
-                                   : curve_value(model, p.curve, time - half_dt) * p.value;
-  return (goal - reached) / (half_dt + half_dt);
-}
-
 /// Books the reaction that a change of acceleration stands for.
 void book_reaction(const model::Model& model, const model::State& state, Index node, const Vec3d& linear,
                    const Vec3d& angular, BodyActions& actions) {
@@ -50,6 +26,24 @@ void book_reaction(const model::Model& model, const model::State& state, Index n
 }
 
 }  // namespace
+
+double prescribed_velocity(const model::Model& model, const model::PrescribedNode& p, double start, double way,
+                           HalfStep half, double time, double half_dt) {
+  switch (p.kind) {
+    case model::PrescribedKind::velocity:
+      return curve_value(model, p.curve, time) * p.value;
+    case model::PrescribedKind::acceleration:
+      return start + curve_integral(model, p.curve, time) * p.value;
+    case model::PrescribedKind::displacement:
+      break;
+  }
+  if (half == HalfStep::closing) {
+    return curve_slope(model, p.curve, time) * p.value;
+  }
+  const double goal = curve_value(model, p.curve, time + half_dt) * p.value;
+  const double reached = p.angular() ? curve_value(model, p.curve, time - half_dt) * p.value : way;
+  return (goal - reached) / (half_dt + half_dt);
+}
 
 PrescribedReport prescribe_velocities(const model::Model& model, model::State& state, Index body, HalfStep half,
                                       double time, double half_dt) {
@@ -65,7 +59,9 @@ PrescribedReport prescribe_velocities(const model::Model& model, model::State& s
     const double present = p.oblique ? dot(rate, p.direction) : *component(rate, p.dof);
     const double kick = half_dt * (p.oblique ? dot(change, p.direction) : *component(change, p.dof));
     const double before = present - kick;
-    const double after = prescribed_velocity(model, p, motion.position, half, time, half_dt);
+    const Vec3d& start = p.angular() ? model.initial_rotation_rate[at(p.node)] : model.initial_velocity[at(p.node)];
+    const double way = dot(motion.position - model.reference_position[at(p.node)], p.direction);
+    const double after = prescribed_velocity(model, p, dot(start, p.direction), way, half, time, half_dt);
     const double middle = half == HalfStep::opening ? after : before;
     report.work += 0.5 * inertia * (after - before) * (after + before) - inertia * kick * middle;
     const Vec3d impulse = (inertia * (after - present)) * p.direction;

@@ -17,6 +17,13 @@ struct PrescribedReport {
 /// Which of the two half steps a prescribed velocity closes.
 enum class HalfStep { opening, closing };
 
+/// The velocity that a condition asks for at the end of a half step, along its direction [length/time] or [1/time].
+/// `start`: the velocity at time zero, `way`: how far a translation has come [length]. A displacement asks for the
+/// velocity that leads to it by the end of the step: from where the node is, so that nothing adds up; rotations, which
+/// are not stored, by the curve's difference. At the end of a step its velocity is the slope of the curve.
+[[nodiscard]] double prescribed_velocity(const model::Model& model, const model::PrescribedNode& p, double start,
+                                         double way, HalfStep half, double time, double half_dt);
+
 /// Sets prescribed velocities after a half step has been taken with the unconstrained acceleration. `time` is the end
 /// of that half step (mid-step or step end) and `half_dt` its length. The work booked is that of the constraint force
 /// over the step's displacement, so that it stands in the same balance as the other trapezoidal works.

@@ -5,12 +5,15 @@
 #include <functional>
 
 #include "parallel/parallel.hpp"
+#include "solve/rigid_laws.hpp"
 
 namespace fexp::solve {
 
 namespace {
 
 constexpr Index piece = 1024;
+/// Of a rigid body in a critical step [rad]: the splitting of its rotation stays accurate.
+constexpr double largest_turn = 0.2;
 
 Diagnostics node_sums(const model::Model& model, const model::State& state, Index begin, Index end) {
   Diagnostics sum;
@@ -28,6 +31,29 @@ Diagnostics node_sums(const model::Model& model, const model::State& state, Inde
     sum.momenta.angular_scale += norm(orbital) + norm(spin);
   }
   return sum;
+}
+
+Diagnostics plus(Diagnostics a, const Diagnostics& b) noexcept { return a += b; }
+
+Diagnostics rigid_sums(const model::RigidBody& body, const model::RigidMotion& motion) {
+  Diagnostics sum;
+  const Vec3d linear = body.mass * motion.velocity, orbital = cross(motion.centre, linear);
+  sum.energies.kinetic = 0.5 * body.mass * dot(motion.velocity, motion.velocity) + rotation_energy(body, motion);
+  sum.momenta.linear = linear;
+  sum.momenta.angular = orbital + motion.angular_momentum;
+  sum.momenta.linear_scale = norm(linear);
+  sum.momenta.angular_scale = norm(orbital) + norm(motion.angular_momentum);
+  return sum;
+}
+
+/// Kinetic energy and momenta.
+Diagnostics motion_sums(const model::Model& model, const model::State& state, const model::Body& body) {
+  if (body.rigid != no_index) {
+    return rigid_sums(model.rigid_bodies[at(body.rigid)], state.rigid[at(body.rigid)]);
+  }
+  return parallel::ordered_fold(
+      body.nodes, piece, Diagnostics{}, [&](Index begin, Index end) { return node_sums(model, state, begin, end); },
+      plus);
 }
 
 double internal_energy(const model::Model& model, const model::State& state, Index begin, Index end) {
@@ -49,8 +75,6 @@ Diagnostics layer_sums(const model::Model& model, const model::State& state, Ind
   }
   return sum;
 }
-
-Diagnostics plus(Diagnostics a, const Diagnostics& b) noexcept { return a += b; }
 
 }  // namespace
 
@@ -86,9 +110,7 @@ Diagnostics& Diagnostics::operator+=(const Diagnostics& other) noexcept {
 Diagnostics body_diagnostics(const model::Model& model, const model::State& state, Index body) {
   const model::Body& owner = model.bodies[at(body)];
   const model::BodyLedger& ledger = state.ledger[at(body)];
-  Diagnostics sum = parallel::ordered_fold(
-      owner.nodes, piece, Diagnostics{}, [&](Index begin, Index end) { return node_sums(model, state, begin, end); },
-      plus);
+  Diagnostics sum = motion_sums(model, state, owner);
   sum.energies.internal = parallel::ordered_fold(
       owner.elements, piece, 0.0, [&](Index begin, Index end) { return internal_energy(model, state, begin, end); },
       std::plus<>());
@@ -116,6 +138,11 @@ Diagnostics diagnostics(const model::Model& model, const model::State& state) {
 }
 
 CriticalStep body_critical_step(const model::Model& model, const model::State& state, Index body) {
+  if (const Index rigid = model.bodies[at(body)].rigid; rigid != no_index) {
+    const double rate = norm(rotation_rate(model.rigid_bodies[at(rigid)], state.rigid[at(rigid)]));
+    const double turn = rate > 0.0 ? largest_turn / rate : HUGE_VAL;
+    return {std::min(model.first_critical_step, turn), model.bodies[at(body)].elements.begin};
+  }
   const StepKernel kernel = select_element_kernel(KernelChoice::automatic).steps;
   const StepKernelArguments arguments{
       state.motion.data(),   model.triangle.data(), model.blocks.data(),

@@ -13,7 +13,7 @@ struct Energies {
   double kinetic{};
   double internal{};    ///< Sum of the elements' stress work
   double contact{};     ///< Potential of contact pairs
-  double barrier{};     ///< Potential of rigid planes
+  double barrier{};     ///< Potential of rigid walls
   double external{};    ///< Work put in by loads, gravity and prescribed motion
   double damping{};     ///< Work taken out by damping
   double dissipated{};  ///< Of the internal energy what plastic flow has taken
@@ -55,7 +55,8 @@ struct Diagnostics {
   return b.step < a.step ? b : a;
 }
 
-/// Critical step over one body's elements in the current geometry.
+/// Critical step over one body's elements in the current geometry. A rigid body has the model's first critical step, or
+/// the one in which it turns by a fifth of a radian.
 [[nodiscard]] CriticalStep body_critical_step(const model::Model& model, const model::State& state, Index body);
 
 }  // namespace fexp::solve

@@ -7,7 +7,7 @@
 
 #include "base/pack.hpp"
 #include "parallel/parallel.hpp"
-#include "solve/loads.hpp"
+#include "solve/island_step.hpp"
 
 namespace fexp::solve {
 
@@ -15,29 +15,10 @@ namespace {
 
 /// Nodes of one piece of a border: small enough to balance, large enough that a piece is worth a task.
 constexpr Index border_nodes = 256;
-/// Elements per task, and nodes in passes over nodes alone.
+/// Elements per task.
 constexpr Index task_elements = 1024;
-constexpr Index task_nodes = 512;
-constexpr Index body_grain = 8;
-
-/// So many of `count` pieces with `items` in all that a task has `wanted` items, about.
-constexpr Index grain(std::size_t count, Index items, Index wanted) noexcept {
-  return items <= 0 ? 1 : std::max(Index{1}, static_cast<Index>(wanted * static_cast<std::int64_t>(count) / items));
-}
 
 }  // namespace
-
-struct IslandSolver::Step {
-  const model::Model& model;
-  model::State& state;
-  Workspace& workspace;
-  double dt;        ///< [time]; 0: evaluate without moving
-  double end_time;  ///< t(n+1) [time]
-  double damping;   ///< [1/time]
-
-  [[nodiscard]] double half_dt() const noexcept { return 0.5 * dt; }
-  [[nodiscard]] double middle_time() const noexcept { return end_time - 0.5 * dt; }
-};
 
 void IslandSolver::assign(const model::Model& model, const Patches& patches, const model::State& state,
                           std::span<const Index> bodies, std::span<const Index> barriers) {
@@ -46,29 +27,41 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
   pieces_.clear();
   patch_pieces_.clear();
   border_pieces_.clear();
+  rigid_pieces_.clear();
+  rigid_.clear();
+  rigid_nodes_ = 0;
+  inertia_ratio_ = 1.0;
   elements_ = 0;
   nodes_ = 0;
   held_ = false;
   prescribed_ = false;
   for (const Index index : bodies_) {
     const model::Body& body = model.bodies[at(index)];
+    const auto first_piece = static_cast<Index>(pieces_.size());
     elements_ += body.elements.size();
     nodes_ += body.nodes.size();
     prescribed_ = prescribed_ || body.prescribed.size() > 0;
     held_ = held_ || prescribed_ || body.fixed.size() > 0 || body.symmetry.size() > 0 || body.oblique.size() > 0;
     for (Index p = patches.body_patches[at(index)].begin; p < patches.body_patches[at(index)].end; ++p) {
-      patch_pieces_.push_back(static_cast<Index>(pieces_.size()));
+      (body.rigid == no_index ? patch_pieces_ : rigid_pieces_).push_back(static_cast<Index>(pieces_.size()));
       pieces_.push_back({index, p, patches.inner_node.data(), patches.patches[at(p)].nodes});
     }
     const IndexRange border = patches.body_border[at(index)];
     for (Index begin = border.begin; begin < border.end; begin += border_nodes) {
-      border_pieces_.push_back(static_cast<Index>(pieces_.size()));
+      (body.rigid == no_index ? border_pieces_ : rigid_pieces_).push_back(static_cast<Index>(pieces_.size()));
       pieces_.push_back(
           {index, no_index, patches.border_node.data(), {begin, std::min(begin + border_nodes, border.end)}});
     }
+    if (body.rigid != no_index) {
+      rigid_.push_back({body.rigid, {first_piece, static_cast<Index>(pieces_.size())}, {}});
+      rigid_nodes_ += body.nodes.size();
+      inertia_ratio_ = maximum(inertia_ratio_, model.rigid_bodies[at(body.rigid)].inertia_ratio);
+    }
   }
   partials_.resize(pieces_.size());
-  plane_partials_.resize(pieces_.size() * model.planes.size());
+  wall_partials_.resize(pieces_.size() * model.walls.size());
+  wall_points_.resize(model.walls.size());
+  wall_ways_.resize(model.walls.size());
   travelled_.resize(bodies_.size());
   contact_.assign(model, bodies_, barriers_, state);
   contact_report_ = {};
@@ -80,12 +73,15 @@ void IslandSolver::evaluate(const model::Model& model, model::State& state, Work
   for (Partial& partial : partials_) {
     partial = {};
   }
+  move_walls(still);
   contact_forces(still);
   if (!workspace.load.empty()) {
     load_nodes(still);
   }
   advance_pieces(still, Pass::accelerate);
   act_on_bodies(still);
+  accelerate_rigid(still);
+  rate_rigid_nodes(still);
 }
 
 IslandReport IslandSolver::advance(const model::Model& model, model::State& state, Workspace& workspace,
@@ -115,13 +111,16 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
       // Held nodes are seen to before velocities change.
       advance_pieces(step, held_ ? Pass::accelerate : Pass::accelerate_and_close);
       act_on_bodies(step);
+      accelerate_rigid(step);
       if (held_) {
         close_pieces(step);
       }
       book_closing_half(step);
     } else {
       advance_pieces(step, opened ? Pass::close_and_open : Pass::close);
+      accelerate_rigid(step);
     }
+    finish_rigid(step, opened);
     if (!check_closed(step, total)) {
       return total;
     }
@@ -129,8 +128,8 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
     total.steps_done = i + 1;
     total.active_pairs = contact_report_.active_pairs;
     total.most_active_pairs = std::max(total.most_active_pairs, contact_report_.active_pairs);
-    total.contact_frequency2 =
-        std::max(total.contact_frequency2, contact_report_.max_stiffness_over_mass + barrier_frequency2_);
+    total.contact_frequency2 = std::max(
+        total.contact_frequency2, inertia_ratio_ * (contact_report_.max_stiffness_over_mass + barrier_frequency2_));
     total.candidates = contact_report_.candidates;
     total.searches = contact_report_.searches - searches_before;
     if (contact_report_.deepest > total.deepest) {
@@ -177,9 +176,11 @@ void IslandSolver::opening_half(const Step& step) {
   const double half = step.half_dt();
   const bool external = step.workspace.external;
   if (external) {
+    move_walls(step);
     for (const Index body : bodies_) {
       const BodyActions& actions = step.workspace.actions[at(body)];
       model::BodyLedger& ledger = step.state.ledger[at(body)];
+      ledger.external_work += half_work_of_walls(actions);
       ledger.external_impulse += half * actions.force;
       ledger.external_angular_impulse += half * actions.moment;
     }
@@ -188,7 +189,11 @@ void IslandSolver::opening_half(const Step& step) {
   const Index pieces_per_task = grain(pieces_.size(), nodes_, task_nodes);
   // One pass over the nodes unless prescribed velocities come in between.
   const bool in_one = !prescribed_;
+  open_rigid(step);
   parallel::for_each(count, pieces_per_task, [&](Index i) {
+    if (is_rigid(step, at(i))) {
+      return;
+    }
     partials_[at(i)] = {};
     kick(step, pieces_[at(i)], partials_[at(i)]);
     if (in_one) {
@@ -199,7 +204,11 @@ void IslandSolver::opening_half(const Step& step) {
     return;
   }
   prescribe(step, HalfStep::opening);
-  parallel::for_each(count, pieces_per_task, [&](Index i) { move(step, pieces_[at(i)], partials_[at(i)]); });
+  parallel::for_each(count, pieces_per_task, [&](Index i) {
+    if (!is_rigid(step, at(i))) {
+      move(step, pieces_[at(i)], partials_[at(i)]);
+    }
+  });
 }
 
 /// The motion of a step, and the work that loads do in its first half.
@@ -308,13 +317,6 @@ void IslandSolver::contact_forces(const Step& step) {
   }
 }
 
-void IslandSolver::load_nodes(const Step& step) {
-  parallel::for_each(static_cast<Index>(bodies_.size()), body_grain, [&](Index i) {
-    evaluate_loads(step.model, step.state.motion.data(), step.state.layers.data(), step.dt == 0.0, step.end_time,
-                   bodies_[at(i)], step.workspace.load.data());
-  });
-}
-
 /// Element forces and what the pass makes of them: patch by patch, each with its inner nodes while the forces are in
 /// the cache, then the nodes of borders.
 void IslandSolver::advance_pieces(const Step& step, Pass pass) {
@@ -325,6 +327,7 @@ void IslandSolver::advance_pieces(const Step& step, Pass pass) {
   border.force_start = step.workspace.patches.border_start.data();
   parallel::for_each(static_cast<Index>(border_pieces_.size()), 1,
                      [&](Index i) { advance_nodes(step, pass, border, at(border_pieces_[at(i)])); });
+  sum_rigid_pieces(step);
 }
 
 void IslandSolver::advance_patch(const Step& step, Pass pass, std::size_t piece) {
@@ -376,86 +379,8 @@ void IslandSolver::advance_nodes(const Step& step, Pass pass, const NodeKernelAr
   partial.largest_speed2 = report.largest_speed2;
 }
 
-/// Accelerations of a piece's nodes and what acts on them from outside. The slow twin of the node kernels.
-void IslandSolver::accelerate(const Step& step, const NodeKernelArguments& k, std::size_t index) {
-  const model::Model& model = step.model;
-  const Workspace& workspace = step.workspace;
-  const Piece& piece = pieces_[index];
-  Partial& partial = partials_[index];
-  const bool loaded = !workspace.load.empty();
-  const std::size_t planes = model.planes.size();
-  const double half = step.half_dt();
-  partial.force = {};
-  partial.moment = {};
-  partial.barrier_energy = 0.0;
-  partial.barrier_frequency2 = 0.0;
-  for (std::size_t p = 0; p < planes; ++p) {
-    plane_partials_[index * planes + p] = {};
-  }
-  for (Index i = piece.nodes.begin; i < piece.nodes.end; ++i) {
-    const Index n = piece.node[i];
-    Vec3d internal, internal_moment;
-    const Index force_end = k.force_start == nullptr ? i - piece.nodes.begin + 1 : k.force_start[i + 1];
-    for (Index f = k.force_start == nullptr ? i - piece.nodes.begin : k.force_start[i]; f < force_end; ++f) {
-      internal += k.force[f].force;
-      internal_moment += k.force[f].moment;
-    }
-    Vec3d force = (k.contact_force != nullptr ? k.contact_force[n] : Vec3d{}) - internal;
-    Vec3d moment = Vec3d{} - internal_moment;
-    const model::NodeMotion& motion = step.state.motion[at(n)];
-    if (workspace.external) {
-      NodalAction outside;
-      if (loaded) {
-        outside = workspace.load[at(n)];
-        partial.external_work +=
-            half * (dot(outside.force, motion.velocity) + dot(outside.moment, motion.rotation_rate));
-      }
-      double stiffness = 0.0;
-      for (std::size_t p = 0; p < planes; ++p) {
-        const PlaneReaction reaction = plane_reaction(model, model.planes[p], n, motion.position);
-        outside.force += reaction.force;
-        partial.barrier_energy += reaction.energy;
-        stiffness += reaction.stiffness;
-        plane_partials_[index * planes + p] += reaction.force;
-      }
-      partial.barrier_frequency2 = maximum(partial.barrier_frequency2, stiffness / model.mass[at(n)]);
-      partial.force += outside.force;
-      partial.moment += cross(motion.position, outside.force) + outside.moment;
-      force += outside.force;
-      moment += outside.moment;
-    }
-    const InverseInertia& inverse = k.inverse_inertia[n];
-    step.state.acceleration[at(n)] = {inverse.mass * force, inverse.inertia * moment};
-  }
-}
-
-/// Sums of what acts on every body from outside, and held components.
-void IslandSolver::act_on_bodies(const Step& step) {
-  Workspace& workspace = step.workspace;
-  if (!workspace.external) {
-    return;
-  }
-  const std::size_t planes = step.model.planes.size();
-  barrier_frequency2_ = 0.0;
-  std::size_t piece = 0;
-  for (const Index body : bodies_) {
-    BodyActions& actions = workspace.actions[at(body)];
-    actions.force = workspace.body_contact[at(body)].barrier_force;
-    actions.moment = workspace.body_contact[at(body)].barrier_moment;
-    std::fill(actions.plane_force.begin(), actions.plane_force.end(), Vec3d{});
-    double barrier_energy = 0.0;
-    for (; piece < pieces_.size() && pieces_[piece].body == body; ++piece) {
-      actions.force += partials_[piece].force;
-      actions.moment += partials_[piece].moment;
-      barrier_energy += partials_[piece].barrier_energy;
-      barrier_frequency2_ = maximum(barrier_frequency2_, partials_[piece].barrier_frequency2);
-      for (std::size_t p = 0; p < planes; ++p) {
-        actions.plane_force[p] += plane_partials_[piece * planes + p];
-      }
-    }
-    step.state.ledger[at(body)].barrier_energy = barrier_energy;
-    hold_constraints(step.model, step.state, body, actions);
-  }
+bool IslandSolver::is_rigid(const Step& step, std::size_t piece) const {
+  return !rigid_.empty() && step.model.bodies[at(pieces_[piece].body)].rigid != no_index;
 }
 
 /// The closing half step of one piece where something acts from outside.
@@ -466,28 +391,11 @@ void IslandSolver::close(const Step& step, std::size_t piece) {
 }
 
 void IslandSolver::close_pieces(const Step& step) {
-  parallel::for_each(static_cast<Index>(pieces_.size()), grain(pieces_.size(), nodes_, task_nodes),
-                     [&](Index i) { close(step, at(i)); });
-}
-
-/// What follows the closing half steps of all pieces: prescribed velocities, and the bodies' books.
-void IslandSolver::book_closing_half(const Step& step) {
-  prescribe(step, HalfStep::closing);
-  const double half = step.half_dt();
-  std::size_t piece = 0;
-  for (const Index body : bodies_) {
-    const BodyActions& actions = step.workspace.actions[at(body)];
-    model::BodyLedger& ledger = step.state.ledger[at(body)];
-    ledger.external_impulse += half * actions.force;
-    ledger.external_angular_impulse += half * actions.moment;
-    for (; piece < pieces_.size() && pieces_[piece].body == body; ++piece) {
-      const Partial& partial = partials_[piece];
-      ledger.external_work += partial.external_work;
-      ledger.damping_work += partial.damping_work;
-      ledger.external_impulse += partial.impulse;
-      ledger.external_angular_impulse += partial.angular_impulse;
+  parallel::for_each(static_cast<Index>(pieces_.size()), grain(pieces_.size(), nodes_, task_nodes), [&](Index i) {
+    if (!is_rigid(step, at(i))) {
+      close(step, at(i));
     }
-  }
+  });
 }
 
 void IslandSolver::record_hashes(const Step& step, std::int64_t number, std::vector<HashRecord>& hashes) const {

@@ -38,7 +38,7 @@ struct IslandReport {
   StopReason stop{StopReason::none};
   Index stop_body{no_index};
   Index stop_node{no_index};    ///< For not_finite: the lowest node concerned.
-  double contact_frequency2{};  ///< Largest bound of omega^2 from contact and planes seen [1/time^2]
+  double contact_frequency2{};  ///< Largest bound of omega^2 from contact and walls seen [1/time^2]
   Index active_pairs{};         ///< At the last step
   Index most_active_pairs{};
   Index candidates{};
@@ -92,13 +92,22 @@ class IslandSolver {
     Vec3d moment;
     Vec3d impulse;
     Vec3d angular_impulse;
+    Vec3d rigid_force;    ///< All that acts on the nodes of a rigid body
+    Vec3d rigid_moment;   ///< The same about its centre
+    Vec3d rotation_rate;  ///< Of a rigid body inside the step
+  };
+  /// A rigid body of the island.
+  struct RigidPart {
+    Index rigid{};        ///< Into Model::rigid_bodies
+    IndexRange pieces;    ///< Its own
+    Vec3d rotation_rate;  ///< Inside the step [1/time]
   };
   /// What follows the element forces. Where something acts from outside: accelerations, with the closing half step
   /// unless nodes are held that have to be seen to before. Elsewhere: both, and where the next step follows at once its
   /// opening half and motion, too.
   enum class Pass { accelerate, accelerate_and_close, close, close_and_open };
 
-  struct Step;  // operands of one step, defined with the passes
+  struct Step;  // defined in solve/island_step.hpp
 
   void opening_half(const Step& step);
   void contact_forces(const Step& step);
@@ -107,6 +116,10 @@ class IslandSolver {
   void advance_patch(const Step& step, Pass pass, std::size_t piece);
   void advance_nodes(const Step& step, Pass pass, const NodeKernelArguments& arguments, std::size_t index);
   void accelerate(const Step& step, const NodeKernelArguments& k, std::size_t index);
+  void move_walls(const Step& step);
+  [[nodiscard]] double half_work_of_walls(const BodyActions& actions) const;
+  void clear_actions(const Step& step, std::size_t index);
+  NodalAction act_on_node(const Step& step, Index n, std::size_t index);
   void act_on_bodies(const Step& step);
   void close(const Step& step, std::size_t piece);
   void close_pieces(const Step& step);
@@ -114,6 +127,19 @@ class IslandSolver {
   static void move(const Step& step, const Piece& piece, Partial& partial);
   static void kick(const Step& step, const Piece& piece, Partial& partial);
   void prescribe(const Step& step, HalfStep half);
+  [[nodiscard]] bool is_rigid(const Step& step, std::size_t piece) const;
+  template <class Visit>
+  void for_each_rigid(const Visit& visit);
+  template <class Visit>
+  void for_each_rigid_piece(const Visit& visit);
+  void open_rigid(const Step& step);
+  void place_rigid_nodes(const Step& step, std::size_t index);
+  void sum_rigid_pieces(const Step& step);
+  void sum_rigid_piece(const Step& step, std::size_t index);
+  void accelerate_rigid(const Step& step);
+  void close_rigid(const Step& step);
+  void rate_rigid_nodes(const Step& step);
+  void finish_rigid(const Step& step, bool go_on);
   [[nodiscard]] NodeKernelArguments node_arguments(const Step& step, Pass pass) const;
   [[nodiscard]] bool check_opened(const Step& step, IslandReport& report) const;
   [[nodiscard]] bool check_closed(const Step& step, IslandReport& report) const;
@@ -124,16 +150,22 @@ class IslandSolver {
   contact::IslandContact contact_;
   std::vector<Index> bodies_;
   std::vector<Index> barriers_;
-  std::vector<Piece> pieces_;          // In order of bodies, of each the patches first
-  std::vector<Index> patch_pieces_;    // Those that are patches
-  std::vector<Index> border_pieces_;   // The others
-  std::vector<Partial> partials_;      // [pieces]
-  std::vector<Vec3d> plane_partials_;  // [pieces][planes]
-  std::vector<double> travelled_;      // [bodies of the island]: bound of the distance since the epoch's start
+  std::vector<Piece> pieces_;         // In order of bodies, of each the patches first
+  std::vector<Index> patch_pieces_;   // Those that are patches
+  std::vector<Index> border_pieces_;  // The others
+  std::vector<Index> rigid_pieces_;   // Those of rigid bodies, in none of the two lists above
+  std::vector<RigidPart> rigid_;      // Rigid bodies
+  std::vector<Partial> partials_;     // [pieces]
+  std::vector<Vec3d> wall_partials_;  // [pieces][walls]
+  std::vector<Vec3d> wall_points_;    // [walls]: at the end of the step
+  std::vector<Vec3d> wall_ways_;      // [walls]: in the step
+  std::vector<double> travelled_;     // [bodies of the island]: bound of the distance since the epoch's start
   contact::ContactReport contact_report_;
   double barrier_frequency2_{};
   Index elements_{};
   Index nodes_{};
+  Index rigid_nodes_{};
+  double inertia_ratio_{1.0};  // Largest of the rigid bodies
   bool contact_written_{};
   bool held_{};  // Nodes of the island are held or prescribed
   bool prescribed_{};

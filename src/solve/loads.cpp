@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/loads.hpp"
 
+#include <span>
 #include <vector>
 
 #include "base/vec3.hpp"
@@ -40,6 +41,22 @@ void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, 
   }
 }
 
+namespace {
+
+/// f.M^-1 f of the loads on a rigid body.
+double sudden_square(const model::RigidBody& body, const model::RigidMotion& motion,
+                     std::span<const model::NodeMotion> nodes, IndexRange range, std::span<const NodalAction> load) {
+  Vec3d force, moment;
+  for (Index n = range.begin; n < range.end; ++n) {
+    force += load[at(n)].force;
+    moment += cross(nodes[at(n)].position - motion.centre, load[at(n)].force) + load[at(n)].moment;
+  }
+  force = model::without(body.held, force);
+  return dot(force, force) / body.mass + dot(moment, inverse_inertia_times(body, motion.orientation, moment));
+}
+
+}  // namespace
+
 double sudden_load_energy(const model::Model& model, const model::State& start, double dt) {
   if (model.gravity.empty() && model.forces.empty() && model.pressure.empty()) {
     return 0.0;
@@ -52,22 +69,17 @@ double sudden_load_energy(const model::Model& model, const model::State& start, 
       continue;
     }
     evaluate_loads(model, start.motion.data(), start.layers.data(), true, 0.0, b, load.data());
+    if (body.rigid != no_index) {
+      sum += sudden_square(model.rigid_bodies[at(body.rigid)], start.rigid[at(body.rigid)], start.motion, body.nodes,
+                           load);
+      continue;
+    }
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
       const NodalAction& f = load[at(n)];
       sum += dot(f.force, f.force) / model.mass[at(n)] + dot(f.moment, f.moment) / model.inertia[at(n)];
     }
   }
   return 0.125 * dt * dt * sum;
-}
-
-PlaneReaction plane_reaction(const model::Model& model, const model::RigidPlane& plane, Index node,
-                             const Vec3d& position) noexcept {
-  const double gap = model.half_thickness[at(node)] - dot(position - plane.point, plane.normal);
-  if (!(gap > 0.0)) {
-    return {};
-  }
-  const double stiffness = plane.stiffness >= 0.0 ? plane.stiffness : model.contact_stiffness[at(node)];
-  return {(stiffness * gap) * plane.normal, 0.5 * stiffness * gap * gap, stiffness};
 }
 
 }  // namespace fexp::solve

@@ -18,15 +18,4 @@ void evaluate_loads(const model::Model& model, const model::NodeMotion* motion, 
 /// nodes get a = M^-1 f at once: sum dt^2 f.M^-1 f/8 over the nodes, `dt` the step, `start` the state at time zero.
 [[nodiscard]] double sudden_load_energy(const model::Model& model, const model::State& start, double dt);
 
-/// Force of a rigid plane on a node, and its potential.
-struct PlaneReaction {
-  Vec3d force;         ///< [force]
-  double energy{};     ///< 1/2 k g^2 [force*length]
-  double stiffness{};  ///< k while the node touches, else 0 [force/length]
-};
-
-/// Penalty reaction of plane `plane` on `node`: g = half thickness - distance, k g along the normal while g > 0.
-[[nodiscard]] PlaneReaction plane_reaction(const model::Model& model, const model::RigidPlane& plane, Index node,
-                                           const Vec3d& position) noexcept;
-
 }  // namespace fexp::solve

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/workspace.hpp"
 
+#include <algorithm>
+
 namespace fexp::solve {
 
 Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
@@ -20,10 +22,14 @@ Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
   }
   actions.resize(model.bodies.size());
   for (BodyActions& body : actions) {
-    body.plane_force.resize(model.planes.size());
+    body.wall_force.resize(model.walls.size());
   }
   body_contact.resize(model.bodies.size());
-  external = !load.empty() || model.run.damping > 0.0 || model.run.is_static() || !model.planes.empty() ||
+  const bool holds_rigid =
+      std::any_of(model.rigid_bodies.begin(), model.rigid_bodies.end(), [](const model::RigidBody& body) {
+        return !body.turns_freely || !body.held.empty() || !body.prescribed.empty();
+      });
+  external = holds_rigid || !load.empty() || model.run.damping > 0.0 || model.run.is_static() || !model.walls.empty() ||
              !model.fixed.empty() || !model.prescribed.empty() || !model.symmetry.empty() || !model.oblique.empty();
 }
 

@@ -20,9 +20,9 @@ struct NodalAction {
 
 /// Sums of external actions over one body at one instant.
 struct BodyActions {
-  Vec3d force;                     ///< [force]
-  Vec3d moment;                    ///< About the origin [force*length]
-  std::vector<Vec3d> plane_force;  ///< Force of each rigid plane on the body [force], shape [planes]
+  Vec3d force;                    ///< [force]
+  Vec3d moment;                   ///< About the origin [force*length]
+  std::vector<Vec3d> wall_force;  ///< Force of each rigid wall on the body [force], shape [walls]
 };
 
 /// Arrays that every step overwrites; one for the whole model, each island writes only its own bodies' parts.
@@ -39,7 +39,7 @@ struct Workspace {
   std::vector<NodalAction> load;
   std::vector<BodyActions> actions;                // [bodies]
   std::vector<contact::BodyContact> body_contact;  // [bodies]
-  bool external{};  ///< Anything at all acts on the model from outside (loads, planes, damping, conditions).
+  bool external{};  ///< Anything at all acts on the model from outside (loads, walls, damping, conditions).
 };
 
 }  // namespace fexp::solve

@@ -31,6 +31,8 @@ const std::vector<Scene>& scenes() {
                                       {"plates_at_rest", test::plates_at_rest, 0.05},
                                       {"metals", test::metals, 0.06},
                                       {"shot", test::shot, 0.06},
+                                      {"rigid_and_soft", test::rigid_and_soft, 0.12},
+                                      {"rigid_machine", test::rigid_machine, 0.1},
                                       {"swarm", test::swarm, 0.1}};
   return all;
 }

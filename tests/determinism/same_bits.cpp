@@ -48,6 +48,10 @@ const std::vector<Scene>& scenes() {
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.plastic_strain > 0.1; }},
       {"shot", test::shot, 0.04,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.deleted > 9; }},
+      {"rigid_and_soft", test::rigid_and_soft, 0.12,
+       [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.extremes.energy_error < 0.01; }},
+      {"rigid_machine", test::rigid_machine, 0.1,
+       [](const test::Outcome& o) { return o.extremes.most_active_pairs > 20; }},
       {"swarm", test::swarm, 0.1,
        [](const test::Outcome& o) {
          return o.extremes.most_active_pairs > 20 && o.extremes.most_islands > o.extremes.fewest_islands;

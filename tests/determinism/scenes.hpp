@@ -185,6 +185,76 @@ inline model::Description shot() {
   return d;
 }
 
+/// A rigid ball and a rigid box, which tumble, meet each other and a soft sphere. Nothing acts from outside. The
+/// penalty is stiff enough to stop bodies that do not give way.
+inline model::Description rigid_and_soft() {
+  model::Description d = with_contact(0.02);
+  d.contact.penalty_scale = 20.0;
+  d.run.safety = 0.25;
+  for (int i = 0; i < 3; ++i) {
+    const model::MeshGenerator mesh =
+        i == 1 ? model::MeshGenerator(model::SquareTube{0.6, 0.9, 6, 9}) : model::MeshGenerator(sphere(0.4, 7));
+    model::BodyDescription& body = add_body(d, "body " + std::to_string(i), mesh);
+    body.rigid = i < 2;
+    body.translate = {0.8 * (i - 1), i == 1 ? -0.1 : 0.05 * i, i == 1 ? -0.45 : 0.0};
+    body.velocity = {-2.0 * (i - 1), 0.3 * i, 0.0};
+    body.angular_velocity = {3.0 - i, 2.0 * i, 5.0};
+  }
+  return d;
+}
+
+/// Rigid bodies that are loaded, driven and held: a ball of given mass thrown onto a damped plate under gravity between
+/// walls of all shapes that move, and a stamp that is lowered by a curve and turned, and may slide in one direction.
+inline model::Description rigid_machine() {
+  model::Description d = with_contact(0.02);
+  d.contact.penalty_scale = 4.0;
+  d.run.safety = 0.25;
+  model::BodyDescription& ball = add_body(d, "ball", sphere(0.3, 8));
+  ball.rigid = true;
+  ball.mass = 40.0;
+  ball.translate = {0.5, 0.5, 0.34};
+  ball.velocity = {0.5, 0.0, -6.0};
+  ball.angular_velocity = {3.0, -2.0, 9.0};
+  add_body(d, "plate", plate(2.0, 20));
+  model::BodyDescription& stamp = add_body(d, "stamp", plate(0.8, 9));
+  stamp.rigid = true;
+  stamp.translate = {1.05, 1.05, 0.06};
+  d.node_sets.emplace_back().name = "stamp";
+  d.node_sets.back().bodies = {"stamp"};
+  d.node_sets.emplace_back().name = "rim";
+  d.node_sets.back().boundary = true;
+  d.node_sets.back().bodies = {"plate"};
+  fix(d, "rim", {"x", "y", "z"});
+  fix(d, "stamp", {"y", "rx"});
+  d.curves.push_back({"press", {{0.0, 0.0}, {0.05, 1.0}}, {}});
+  model::Prescribed down{"stamp", "z", {}, "press", {}};
+  down.displacement = -0.15;
+  model::Prescribed turn{"stamp", "rz", {}, "press", {}};
+  turn.displacement = 0.4;
+  d.prescribed = {down, turn};
+  d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
+  d.pressure.push_back({{"ball"}, "", 30.0, "press", {}});
+  d.planes.push_back({"floor", {0.0, 0.0, -0.05}, {0.0, 0.1, 1.0}, -1.0, {}});
+  d.planes.back().displacement = {0.0, 0.0, 0.04};
+  d.planes.back().curve = "press";
+  model::RigidSphere& bowl = d.spheres.emplace_back();
+  bowl.name = "bowl";
+  bowl.centre = {1.0, 1.0, 0.4};
+  bowl.radius = 1.6;
+  bowl.inside = true;
+  bowl.velocity = {2.0, 0.0, 0.0};
+  model::RigidCylinder& roll = d.cylinders.emplace_back();
+  roll.name = "roll";
+  roll.point = {-0.05, 0.3, 0.3};
+  roll.axis = {0.1, 1.0, 0.0};
+  roll.radius = 0.2;
+  roll.displacement = {0.0, 0.0, -0.15};
+  roll.curve = "press";
+  d.run.damping = 1.0;
+  d.run.energy_drift_limit = 1.0;
+  return d;
+}
+
 /// What must be the same however a scene is computed, and what proves that the scene is worth computing.
 struct Outcome {
   std::uint64_t state_hash{};

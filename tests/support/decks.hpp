@@ -115,6 +115,23 @@ point = [0, 0, -50]
 normal = [0, 0, 2]
 stiffness = 100
 
+[[cylinder]]
+name = "roll"
+point = [0, 0, -60]
+axis = [0, 3, 0]
+radius = 5
+velocity = [1, 0, 0]
+curve = "ramp"
+
+[[sphere]]
+name = "bowl"
+centre = [0, 0, 1]
+radius = 500
+inside = true
+stiffness = 50
+displacement = [0, 0, 2]
+curve = "ramp"
+
 [contact]
 enabled = true
 self = false

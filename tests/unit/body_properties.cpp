@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/body_properties.hpp"
+#include "model/body_properties.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "support/descriptions.hpp"
 
-namespace fexp::app {
+namespace fexp::model {
 namespace {
 
 constexpr double density = 2000.0;
@@ -16,8 +16,8 @@ constexpr double thickness = 0.02;
 const physics::LinearElastic law{density, 1.0e9, 0.3};
 
 TEST(body_properties, a_plate_far_away_has_those_of_a_thick_slab) {
-  model::Description d = test::description(law, thickness);
-  test::add_body(d, "plate", model::Plate{3.0, 2.0, 5, 3, "one"}).translate = {1000.0, -500.0, 20.0};
+  Description d = test::description(law, thickness);
+  test::add_body(d, "plate", Plate{3.0, 2.0, 5, 3, "one"}).translate = {1000.0, -500.0, 20.0};
   const BodyProperties p = body_properties(test::build(d), 0);
   const double mass = density * thickness * 6.0;
   EXPECT_NEAR(p.mass, mass, 1e-9 * mass);
@@ -32,9 +32,9 @@ TEST(body_properties, a_plate_far_away_has_those_of_a_thick_slab) {
 }
 
 TEST(body_properties, products_of_inertia_have_the_sign_of_the_tensor) {
-  model::Description d = test::description(law, thickness);
+  Description d = test::description(law, thickness);
   // A strip along the direction (1, 1, 0): the mass lies where x and y have the same sign.
-  model::BodyDescription& strip = test::add_body(d, "strip", model::Plate{2.0, 0.1, 8, 1, "one"});
+  BodyDescription& strip = test::add_body(d, "strip", Plate{2.0, 0.1, 8, 1, "one"});
   strip.rotate.push_back({{0.0, 0.0, 1.0}, 45.0, {}});
   const BodyProperties p = body_properties(test::build(d), 0);
   EXPECT_NEAR(p.inertia[3], -p.mass * (4.0 - 0.01) / 24.0, 1e-9 * p.mass);
@@ -42,8 +42,8 @@ TEST(body_properties, products_of_inertia_have_the_sign_of_the_tensor) {
 
 TEST(body_properties, a_fine_sphere_tends_to_a_thin_shell_with_second_order) {
   const auto error_of = [](int cells) {
-    model::Description d = test::description(law, 1.0e-3);
-    test::add_body(d, "ball", model::CubedSphere{0.5, cells});
+    Description d = test::description(law, 1.0e-3);
+    test::add_body(d, "ball", CubedSphere{0.5, cells});
     const BodyProperties p = body_properties(test::build(d), 0);
     const double exact = 2.0 / 3.0 * (4.0 * std::numbers::pi * 0.25 * density * 1.0e-3) * 0.25;
     return std::abs(p.inertia[0] / exact - 1.0);
@@ -54,10 +54,10 @@ TEST(body_properties, a_fine_sphere_tends_to_a_thin_shell_with_second_order) {
 }
 
 TEST(body_properties, two_bodies_together_add_up_by_the_parallel_axis_theorem) {
-  model::Description d = test::description(law, thickness);
-  test::add_body(d, "left", model::CubedSphere{0.5, 4}).translate = {-3.0, 0.0, 0.0};
-  test::add_body(d, "right", model::CubedSphere{0.5, 4}).translate = {3.0, 0.0, 0.0};
-  const model::Model model = test::build(d);
+  Description d = test::description(law, thickness);
+  test::add_body(d, "left", CubedSphere{0.5, 4}).translate = {-3.0, 0.0, 0.0};
+  test::add_body(d, "right", CubedSphere{0.5, 4}).translate = {3.0, 0.0, 0.0};
+  const Model model = test::build(d);
   const BodyProperties one = body_properties(model, 1), all = total_properties(model);
   EXPECT_NEAR(all.mass, 2.0 * one.mass, 1e-12 * all.mass);
   EXPECT_NEAR(all.inertia[0], 2.0 * one.inertia[0], 1e-9 * all.inertia[0]);
@@ -65,4 +65,4 @@ TEST(body_properties, two_bodies_together_add_up_by_the_parallel_axis_theorem) {
 }
 
 }  // namespace
-}  // namespace fexp::app
+}  // namespace fexp::model

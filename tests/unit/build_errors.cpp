@@ -209,6 +209,28 @@ TEST(build_errors, vectors_without_direction_are_refused) {
   expect_one(errors_of(d), {"plane \"floor\" has no direction"});
 }
 
+TEST(build_errors, walls_that_move_in_no_way_that_can_be_are_refused) {
+  Description d = good();
+  d.cylinders.push_back({"roll", {}, {}, 1.0, false, -1.0, line_7, {}, {}, ""});
+  expect_one(errors_of(d), {"axis of cylinder \"roll\" has no direction"});
+  d.cylinders[0].axis = {1.0, 0.0, 0.0};
+  EXPECT_TRUE(errors_of(d).empty());
+  d.cylinders[0].velocity = d.cylinders[0].displacement = {1.0, 0.0, 0.0};
+  expect_one(errors_of(d), {"cylinder \"roll\" has a velocity and a displacement"});
+  d.cylinders[0].velocity = {};
+  expect_one(errors_of(d), {"displacement of cylinder \"roll\" is 1 times its size at the start"});
+  d.cylinders[0].curve = "ramp";
+  EXPECT_TRUE(errors_of(d).empty());
+  d.cylinders[0].curve = "slope";
+  expect_one(errors_of(d), {"no curve \"slope\"", "ramp"});
+  d.cylinders[0].curve = "ramp";
+  d.cylinders[0].displacement = {};
+  expect_one(errors_of(d), {"cylinder \"roll\" names a curve and does not move"});
+  d.cylinders[0].curve.clear();
+  d.spheres.push_back({"roll", {}, 1.0, false, -1.0, line_7, {}, {}, ""});
+  expect_one(errors_of(d), {"\"roll\" is already that of another wall"});
+}
+
 TEST(build_errors, curves_without_points_with_falling_times_or_no_numbers_are_refused) {
   for (const std::vector<std::array<double, 2>>& points : std::vector<std::vector<std::array<double, 2>>>{
            {}, {{1.0, 0.0}, {0.5, 0.0}}, {{0.0, std::numeric_limits<double>::infinity()}}}) {
@@ -391,6 +413,32 @@ TEST(build_errors, a_node_of_no_triangle_is_named_by_its_label) {
                          }
                        }),
              {"node 109", "belongs to no triangle"});
+}
+
+TEST(build_errors, conditions_on_a_part_of_a_rigid_body_are_refused) {
+  Description d = good();
+  d.bodies[0].rigid = true;
+  d.fixed.push_back({"edge", {"x"}, line_7});
+  expect_one(errors_of(d), {"\"edge\" has 3 of the 9 nodes", "\"plate\"", "rigid and held as a whole"});
+  d.fixed.clear();
+  d.prescribed.push_back({"edge", "x", 1.0, "", line_7});
+  expect_one(errors_of(d), {"\"edge\" has 3 of the 9 nodes", "\"plate\"", "rigid and moved as a whole"});
+  d.prescribed.clear();
+  d.node_sets.back().box = {};
+  d.fixed.push_back({"edge", {"x"}, line_7});
+  EXPECT_TRUE(errors_of(d).empty()) << "all of its nodes";
+  d.fixed.clear();
+  d.symmetry.push_back({"edge", {0.0, 0.0, 1.0}, line_7});
+  expect_one(errors_of(d), {"plane of symmetry", "\"plate\", which is rigid"});
+}
+
+TEST(build_errors, a_mass_of_a_body_that_deforms_is_refused) {
+  Description d = good();
+  d.bodies[1].mass = 2.0;
+  d.bodies[1].place = line_7;
+  expect_one(errors_of(d), {"\"ball\" is given a mass and is not rigid"});
+  d.bodies[1].rigid = true;
+  EXPECT_TRUE(errors_of(d).empty());
 }
 
 TEST(build_errors, independent_errors_are_reported_together) {

@@ -209,13 +209,24 @@ TEST(deck, a_model_is_built_of_it) {
   EXPECT_EQ(model.element_count(), 12 * 9 + 6 * 4 * 5 * 8);
 }
 
-TEST(deck, planes_and_contact_are_read) {
+TEST(deck, walls_and_contact_are_read) {
   const model::Description d = parse_well(test::full_deck).description;
   ASSERT_EQ(d.planes.size(), 1U);
   EXPECT_EQ(d.planes[0].name, "floor");
   EXPECT_EQ(d.planes[0].point, (Vec3d{0.0, 0.0, -50.0}));
   EXPECT_EQ(d.planes[0].normal, (Vec3d{0.0, 0.0, 2.0}));
   EXPECT_EQ(d.planes[0].stiffness, 100.0);
+  ASSERT_EQ(d.cylinders.size(), 1U);
+  EXPECT_EQ(d.cylinders[0].point, (Vec3d{0.0, 0.0, -60.0}));
+  EXPECT_EQ(d.cylinders[0].axis, (Vec3d{0.0, 3.0, 0.0}));
+  EXPECT_EQ(d.cylinders[0].radius, 5.0);
+  EXPECT_EQ(d.cylinders[0].velocity, (Vec3d{1.0, 0.0, 0.0}));
+  EXPECT_FALSE(d.cylinders[0].inside);
+  ASSERT_EQ(d.spheres.size(), 1U);
+  EXPECT_EQ(d.spheres[0].centre, (Vec3d{0.0, 0.0, 1.0}));
+  EXPECT_TRUE(d.spheres[0].inside);
+  EXPECT_EQ(d.spheres[0].displacement, (Vec3d{0.0, 0.0, 2.0}));
+  EXPECT_EQ(d.spheres[0].curve, "ramp");
   EXPECT_TRUE(d.contact.enabled);
   EXPECT_FALSE(d.contact.self);
   EXPECT_EQ(d.contact.penalty_scale, 0.5);

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <vector>
 
-#include "app/body_properties.hpp"
 #include "model/added_mass.hpp"
+#include "model/body_properties.hpp"
 #include "model/element_shares.hpp"
 #include "quality/assess.hpp"
 #include "solve/diagnostics.hpp"
@@ -47,7 +47,7 @@ TEST(mass_scaling, gives_short_elements_just_the_mass_that_the_step_takes) {
   EXPECT_EQ(scaled.bodies[0].mass, plain.bodies[0].mass);
   EXPECT_EQ(std::vector<double>(scaled.inertia.begin(), scaled.inertia.begin() + plain.bodies[0].nodes.end),
             std::vector<double>(plain.inertia.begin(), plain.inertia.begin() + plain.bodies[0].nodes.end));
-  EXPECT_NEAR(app::body_properties(scaled, 1).mass, scaled.bodies[1].mass, 1e-12 * scaled.bodies[1].mass);
+  EXPECT_NEAR(model::body_properties(scaled, 1).mass, scaled.bodies[1].mass, 1e-12 * scaled.bodies[1].mass);
 
   const std::vector<model::AddedMass> parts = model::added_masses(scaled);
   ASSERT_EQ(parts.size(), 1U);
@@ -144,7 +144,7 @@ TEST(point_mass, moves_the_centre_and_the_inertia_of_its_body) {
   test::add_box_set(d, "corner", {1.0, 1.0, 0.0}, {1.0, 1.0, 0.0});
   d.point_masses.push_back({"corner", 20.0, 3.0, false, {}});
   const model::Model model = test::build(d);
-  const app::BodyProperties p = app::body_properties(model, 0);
+  const model::BodyProperties p = model::body_properties(model, 0);
   // A plate of mass 20 about its centre, and 20 at its corner: both are a quarter of the diagonal from the middle.
   EXPECT_NEAR(p.mass, 40.0, 1e-12);
   EXPECT_NEAR(p.centre.x, 0.75, 1e-14);

@@ -52,7 +52,8 @@ long allocations_of(const Work& work) {
   return allocations;
 }
 
-/// A vibrating plate on which everything acts that a deck can ask for, but nothing that needs a contact search.
+/// A vibrating plate on which everything acts that a deck can ask for, but nothing that needs a contact search, and a
+/// rigid one that is driven.
 model::Model busy_plate() {
   auto d = test::description({1000.0, 1.0e6, 0.4}, 0.02);
   model::Plate mesh;
@@ -71,6 +72,15 @@ model::Model busy_plate() {
   test::fix(d, "left", {"x", "ry"});
   d.prescribed.push_back({"right", "y", 0.1, "ramp", {}});
   d.symmetry.push_back({"middle", {0.0, 1.0, 0.0}, {}});
+  model::BodyDescription& stamp = test::add_body(d, "stamp", mesh);
+  stamp.rigid = true;
+  stamp.translate = {0.0, 0.0, 3.0};
+  d.node_sets.emplace_back().name = "stamp";
+  d.node_sets.back().bodies = {"stamp"};
+  test::fix(d, "stamp", {"x", "rx"});
+  d.prescribed.push_back({"stamp", "z", -0.1, "ramp", {}});
+  d.prescribed.push_back({"stamp", "rz", 0.2, "ramp", {}});
+  d.planes[0].velocity = {0.0, 0.0, 0.1};
   d.forces.push_back({"middle", {0.0, 0.0, 1.0}, {0.0, 0.1, 0.0}, true, "ramp", {}});
   return test::build(d);
 }

@@ -103,8 +103,8 @@ model::Model mass_on_spring(double courant, double step_ratio, double& dt) {
   model::Model model = model::build_model(d, meshes, errors);
   EXPECT_TRUE(errors.empty());
   dt = step_ratio * model.first_critical_step;
-  model.planes[0].stiffness = model.mass[0] * (courant / dt) * (courant / dt);
-  const double offset = model.mass[0] * 10.0 / model.planes[0].stiffness;
+  model.walls[0].stiffness = model.mass[0] * (courant / dt) * (courant / dt);
+  const double offset = model.mass[0] * 10.0 / model.walls[0].stiffness;
   for (Vec3d& x : model.reference_position) {
     x.z = model.half_thickness[0] - offset;
   }
@@ -220,7 +220,7 @@ TEST(gravity, rest_and_drop_on_a_plane_are_as_known) {
     model.inertia[n] *= 2.0 / 3.0 / 0.0333333;
     model.reference_position[n].z = model.half_thickness[n];
   }
-  model.planes[0].stiffness = 1.0e5 / 3.0;
+  model.walls[0].stiffness = 1.0e5 / 3.0;
   dt = 1.0e-5;
   model.run.damping = 400.0;
   test::DirectRun rest(model);
@@ -238,7 +238,7 @@ TEST(gravity, rest_and_drop_on_a_plane_are_as_known) {
     drop.advance(dt, 1);
     const double depth = model.half_thickness[0] - drop.state.motion[0].position.z;
     deepest = std::max(deepest, depth);
-    force = std::max(force, drop.workspace.actions[0].plane_force[0].z);
+    force = std::max(force, drop.workspace.actions[0].wall_force[0].z);
     touching += depth > 0.0 ? dt : 0.0;
   }
   verify({"28", "drop of 50 mm", "deepest penetration", 4.62999e-3, deepest, 0.01, true, "closed form"});

@@ -52,6 +52,14 @@ CASES = {
     33: "Strip with a tip mass",
     34: "Damped strip",
     35: "Prescribed displacement",
+    50: "Rigid body without moments",
+    51: "Spinning rigid plate",
+    52: "Thrown rigid plate",
+    53: "Rigid ball on a plane",
+    54: "Rigid ball on an elastic plate",
+    55: "Plate pushed by a plane",
+    56: "Ball and round walls",
+    57: "Ball struck by a wall",
 }
 
 

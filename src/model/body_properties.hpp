@@ -5,7 +5,7 @@
 
 #include "model/model.hpp"
 
-namespace fexp::app {
+namespace fexp::model {
 
 /// What a body is before the run moves it.
 struct BodyProperties {
@@ -16,9 +16,9 @@ struct BodyProperties {
 };
 
 /// Integrals over the flat triangles with their thickness, not over the lumped masses that the solver steps.
-[[nodiscard]] BodyProperties body_properties(const model::Model& model, Index body);
+[[nodiscard]] BodyProperties body_properties(const Model& model, Index body);
 
 /// Of all bodies together.
-[[nodiscard]] BodyProperties total_properties(const model::Model& model);
+[[nodiscard]] BodyProperties total_properties(const Model& model);
 
-}  // namespace fexp::app
+}  // namespace fexp::model

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/body_properties.hpp"
+#include "model/body_properties.hpp"
 
-namespace fexp::app {
+namespace fexp::model {
 
 namespace {
 
@@ -24,17 +24,18 @@ void add_scaled(double scale, const std::array<double, 6>& a, std::array<double,
 
 /// Exact: over a triangle the mean of x x^T is (sum of corner products + 9 x centroid products) / 12, and across the
 /// thickness t the normal adds t^2 / 12.
-Moments triangle_moments(const model::Model& model, Index element, const Vec3d& origin) {
+Moments triangle_moments(const Model& model, Index element, const Vec3d& origin) {
   const auto& corners = model.triangle[at(element)];
   const std::array<Vec3d, 3> x{model.reference_position[at(corners[0])] - origin,
                                model.reference_position[at(corners[1])] - origin,
                                model.reference_position[at(corners[2])] - origin};
-  const model::SectionData& section = model.section_of(element);
+  const SectionData& section = model.section_of(element);
   const Vec3d centroid = (1.0 / 3.0) * (x[0] + x[1] + x[2]);
   const Vec3d normal = cross(x[1] - x[0], x[2] - x[0]);
   const double t = section.thickness;
   Moments m;
-  m.mass = model.mass_factor(element) * section.density * t * model.reference_area[at(element)];
+  const Body& body = model.bodies[at(model.blocks[at(model.element_block[at(element)])].body)];
+  m.mass = body.density_factor * model.mass_factor(element) * section.density * t * model.reference_area[at(element)];
   m.first = m.mass * centroid;
   for (const Vec3d& corner : x) {
     add_scaled(m.mass / 12.0, products(corner), m.second);
@@ -45,7 +46,7 @@ Moments triangle_moments(const model::Model& model, Index element, const Vec3d& 
 }
 
 /// `origin` near the elements keeps the digits that the shift to their centre would cost.
-BodyProperties properties(const model::Model& model, IndexRange elements, IndexRange nodes) {
+BodyProperties properties(const Model& model, IndexRange elements, IndexRange nodes) {
   BodyProperties result;
   for (Index n = nodes.begin; n < nodes.end; ++n) {
     result.box.include(model.reference_position[at(n)]);
@@ -58,7 +59,7 @@ BodyProperties properties(const model::Model& model, IndexRange elements, IndexR
     sum.first += m.first;
     add_scaled(1.0, m.second, sum.second);
   }
-  for (const model::AddedNode& point : model.point_masses) {
+  for (const AddedNode& point : model.point_masses) {
     if (nodes.contains(point.node)) {
       const Vec3d x = model.reference_position[at(point.node)] - origin;
       sum.mass += point.mass;
@@ -79,12 +80,12 @@ BodyProperties properties(const model::Model& model, IndexRange elements, IndexR
 
 }  // namespace
 
-BodyProperties body_properties(const model::Model& model, Index body) {
+BodyProperties body_properties(const Model& model, Index body) {
   return properties(model, model.bodies[at(body)].elements, model.bodies[at(body)].nodes);
 }
 
-BodyProperties total_properties(const model::Model& model) {
+BodyProperties total_properties(const Model& model) {
   return properties(model, {0, model.element_count()}, {0, model.node_count()});
 }
 
-}  // namespace fexp::app
+}  // namespace fexp::model

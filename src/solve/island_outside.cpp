@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstddef>
+
+#include "base/pack.hpp"
+#include "parallel/parallel.hpp"
+#include "solve/island_step.hpp"
+#include "solve/loads.hpp"
+#include "solve/walls.hpp"
+
+/// What acts on an island from outside: loads, rigid walls and conditions, with the bodies' books.
+namespace fexp::solve {
+
+/// Where the walls are at the end of the step, and how far they come in it.
+void IslandSolver::move_walls(const Step& step) {
+  for (std::size_t w = 0; w < step.model.walls.size(); ++w) {
+    wall_points_[w] = wall_point(step.model, step.model.walls[w], step.end_time);
+    wall_ways_[w] = wall_points_[w] - wall_point(step.model, step.model.walls[w], step.end_time - step.dt);
+  }
+}
+
+/// Work that the walls do on a body with the forces of one end of the step.
+double IslandSolver::half_work_of_walls(const BodyActions& actions) const {
+  double work = 0.0;
+  for (std::size_t w = 0; w < wall_ways_.size(); ++w) {
+    work += 0.5 * dot(actions.wall_force[w], wall_ways_[w]);
+  }
+  return work;
+}
+
+void IslandSolver::load_nodes(const Step& step) {
+  parallel::for_each(static_cast<Index>(bodies_.size()), body_grain, [&](Index i) {
+    evaluate_loads(step.model, step.state.motion.data(), step.state.layers.data(), step.dt == 0.0, step.end_time,
+                   bodies_[at(i)], step.workspace.load.data());
+  });
+}
+
+void IslandSolver::clear_actions(const Step& step, std::size_t index) {
+  Partial& partial = partials_[index];
+  partial.force = {};
+  partial.moment = {};
+  partial.barrier_energy = 0.0;
+  partial.barrier_frequency2 = 0.0;
+  const std::size_t walls = step.model.walls.size();
+  std::fill_n(wall_partials_.begin() + static_cast<std::ptrdiff_t>(index * walls), walls, Vec3d{});
+}
+
+/// What acts on a node of a piece from outside, booked in the piece's partial sums.
+NodalAction IslandSolver::act_on_node(const Step& step, Index n, std::size_t index) {
+  const model::Model& model = step.model;
+  const model::NodeMotion& motion = step.state.motion[at(n)];
+  const std::size_t walls = model.walls.size();
+  Partial& partial = partials_[index];
+  NodalAction outside;
+  if (!step.workspace.load.empty()) {
+    outside = step.workspace.load[at(n)];
+    partial.external_work +=
+        step.half_dt() * (dot(outside.force, motion.velocity) + dot(outside.moment, motion.rotation_rate));
+  }
+  double stiffness = 0.0;
+  for (std::size_t w = 0; w < walls; ++w) {
+    const WallReaction reaction = wall_reaction(model, model.walls[w], wall_points_[w], n, motion.position);
+    outside.force += reaction.force;
+    partial.barrier_energy += reaction.energy;
+    stiffness += reaction.stiffness;
+    wall_partials_[index * walls + w] += reaction.force;
+  }
+  partial.barrier_frequency2 = maximum(partial.barrier_frequency2, stiffness / model.mass[at(n)]);
+  partial.force += outside.force;
+  partial.moment += cross(motion.position, outside.force) + outside.moment;
+  return outside;
+}
+
+/// Accelerations of a piece's nodes and what acts on them from outside. The slow twin of the node kernels.
+void IslandSolver::accelerate(const Step& step, const NodeKernelArguments& k, std::size_t index) {
+  const Piece& piece = pieces_[index];
+  clear_actions(step, index);
+  for (Index i = piece.nodes.begin; i < piece.nodes.end; ++i) {
+    const Index n = piece.node[i];
+    Vec3d internal, internal_moment;
+    const Index force_end = k.force_start == nullptr ? i - piece.nodes.begin + 1 : k.force_start[i + 1];
+    for (Index f = k.force_start == nullptr ? i - piece.nodes.begin : k.force_start[i]; f < force_end; ++f) {
+      internal += k.force[f].force;
+      internal_moment += k.force[f].moment;
+    }
+    Vec3d force = (k.contact_force != nullptr ? k.contact_force[n] : Vec3d{}) - internal;
+    Vec3d moment = Vec3d{} - internal_moment;
+    if (step.workspace.external) {
+      const NodalAction outside = act_on_node(step, n, index);
+      force += outside.force;
+      moment += outside.moment;
+    }
+    const InverseInertia& inverse = k.inverse_inertia[n];
+    step.state.acceleration[at(n)] = {inverse.mass * force, inverse.inertia * moment};
+  }
+}
+
+/// Sums of what acts on every body from outside, and held components.
+void IslandSolver::act_on_bodies(const Step& step) {
+  Workspace& workspace = step.workspace;
+  if (!workspace.external) {
+    return;
+  }
+  const std::size_t walls = step.model.walls.size();
+  barrier_frequency2_ = 0.0;
+  std::size_t piece = 0;
+  for (const Index body : bodies_) {
+    BodyActions& actions = workspace.actions[at(body)];
+    actions.force = workspace.body_contact[at(body)].barrier_force;
+    actions.moment = workspace.body_contact[at(body)].barrier_moment;
+    std::fill(actions.wall_force.begin(), actions.wall_force.end(), Vec3d{});
+    double barrier_energy = 0.0;
+    for (; piece < pieces_.size() && pieces_[piece].body == body; ++piece) {
+      actions.force += partials_[piece].force;
+      actions.moment += partials_[piece].moment;
+      barrier_energy += partials_[piece].barrier_energy;
+      barrier_frequency2_ = maximum(barrier_frequency2_, partials_[piece].barrier_frequency2);
+      for (std::size_t w = 0; w < walls; ++w) {
+        actions.wall_force[w] += wall_partials_[piece * walls + w];
+      }
+    }
+    step.state.ledger[at(body)].barrier_energy = barrier_energy;
+    hold_constraints(step.model, step.state, body, actions);
+  }
+}
+
+/// What follows the closing half steps of all pieces: prescribed velocities, and the bodies' books.
+void IslandSolver::book_closing_half(const Step& step) {
+  prescribe(step, HalfStep::closing);
+  const double half = step.half_dt();
+  std::size_t piece = 0;
+  for (const Index body : bodies_) {
+    const BodyActions& actions = step.workspace.actions[at(body)];
+    model::BodyLedger& ledger = step.state.ledger[at(body)];
+    ledger.external_work += half_work_of_walls(actions);
+    ledger.external_impulse += half * actions.force;
+    ledger.external_angular_impulse += half * actions.moment;
+    for (; piece < pieces_.size() && pieces_[piece].body == body; ++piece) {
+      const Partial& partial = partials_[piece];
+      ledger.external_work += partial.external_work;
+      ledger.damping_work += partial.damping_work;
+      ledger.external_impulse += partial.impulse;
+      ledger.external_angular_impulse += partial.angular_impulse;
+    }
+  }
+}
+
+}  // namespace fexp::solve

@@ -209,6 +209,26 @@ TEST(build_errors, vectors_without_direction_are_refused) {
   expect_one(errors_of(d), {"plane \"floor\" has no direction"});
 }
 
+TEST(build_errors, a_radial_velocity_on_its_axis_and_an_axis_without_direction_are_refused) {
+  InitialVelocity given;
+  given.set = "edge";  // x = 0, y from 0 to 2
+  given.radial = 1.0;
+  given.place = line_7;
+  Description d = good();
+  d.initial_velocities = {given};
+  d.initial_velocities[0].point = {1.0, 1.0, 0.0};
+  EXPECT_TRUE(errors_of(d).empty());
+  d.initial_velocities[0].point = {0.0, 1.0, 3.0};
+  expect_one(errors_of(d), {"radial velocity of set \"edge\"", "lies on the axis"});
+  d.initial_velocities[0].radial = 0.0;
+  EXPECT_TRUE(errors_of(d).empty());
+  d.initial_velocities[0].axis = {};
+  expect_one(errors_of(d), {"the axis of the velocity of set \"edge\""});
+  d.initial_velocities[0] = given;
+  d.initial_velocities[0].set = "egde";
+  expect_one(errors_of(d), {"no node set \"egde\"", "edge"});
+}
+
 TEST(build_errors, curves_without_points_with_falling_times_or_no_numbers_are_refused) {
   for (const std::vector<std::array<double, 2>>& points : std::vector<std::vector<std::array<double, 2>>>{
            {}, {{1.0, 0.0}, {0.5, 0.0}}, {{0.0, std::numeric_limits<double>::infinity()}}}) {

@@ -31,7 +31,7 @@ on these, there is none.
 Made by `tests/verification/make_table.py`; to renew it:
 
     rm -f build/rows.tsv
-    ./fexp verify --all --json > build/decks.json
+    build/release/fexp verify --all --json > build/decks.json
     FEXP_VERIFICATION_ROWS=build/rows.tsv build/release/tests/verification_tests
     tests/verification/make_table.py build/decks.json build/rows.tsv docs/verification.md
 

@@ -190,6 +190,12 @@ CASES = {
             ("poisson = 0.45", 'poisson = 0.45\nlaw = "j2_table"\ntable = [[0.0, 1.0e5], [0.1, 2.0e5], [0.2, 1.9e5]]')),
         "Too few points of Lobatto's rule": Case(
             ("thickness = 0.005", 'thickness = 0.005\npoints = 2\nquadrature = "lobatto"')),
+        "A velocity away from an axis, on it": Case(
+            ('set = "rim"', 'set = "rim"\n\n[[initial_velocity]]\nset = "rim"\nradial = 1.0\npoint = [-0.2, -0.2, 0]')),
+        "Parts of cells": Case(('set = "rim"', 'set = "rim"\n\n[refinement]\nfactor = 0.3')),
+        "Expectations of meshes that are not run": Case(
+            ('set = "rim"', 'set = "rim"\n\n[verify]\nmeshes = [1.0, 2.0]\n\n[[expect]]\nname = "peak"\n'
+             'column = "displacement_z"\nreference = 1.0\ntolerance = 0.1\nmesh = 4.0')),
         "A body without a section": Case(('section = "skin"\n' + BALL_MESH, BALL_MESH)),
     },
     "Meshes": {
@@ -220,6 +226,7 @@ CASES = {
         "No thread": Case(options=("deck.toml", "--threads", "0")),
         "An unknown command": Case(command="rum"),
         "Threads that are no number": Case(command="bench", options=("--threads", "1,many")),
+        "No such case": Case(command="verify", options=("36",)),
         "No such benchmark": Case(command="bench", options=("--filter", "sphere_")),
         "Something that is no result": Case(command="info", options=("deck.toml",)),
         "A comparison with nothing": Case(command="compare", options=("a.run", "b.run")),

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -17,7 +17,9 @@
 #include "app/ranks.hpp"
 #include "app/run_driver.hpp"
 #include "app/signals.hpp"
+#include "app/verify_report.hpp"
 #include "app/with_ranks.hpp"
+#include "io/atomic_file.hpp"
 #include "io/input_files.hpp"
 #include "io/output_error.hpp"
 #include "io/run_directory.hpp"
@@ -29,22 +31,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct VerifyOptions {
-  std::vector<std::string> decks;
+  std::vector<std::string> cases;
   std::string out;
   int threads{};
+  bool all{};
   bool json{};
-};
-
-/// One expectation, held against a run.
-struct Row {
-  std::string deck;
-  std::string title;
-  std::int64_t elements{};
-  io::Expectation expected;
-  double result{};
-  double error{};
-
-  [[nodiscard]] bool good() const { return error <= expected.tolerance; }
 };
 
 /// A directory for the runs: the user's, or one that is removed at the end.
@@ -69,18 +60,21 @@ class RunsDirectory {
     }
   }
 
-  [[nodiscard]] fs::path of(const fs::path& deck) const { return path_ / deck.stem(); }
+  [[nodiscard]] bool is_kept() const noexcept { return kept_; }
+  [[nodiscard]] fs::path run_of(const fs::path& deck) const { return path_ / deck.stem(); }
+  [[nodiscard]] fs::path table() const { return path_ / "verification.json"; }
+  /// A deck like the given one, its meshes refined by the factor.
+  [[nodiscard]] fs::path refined_deck(const fs::path& deck, double factor) const {
+    return path_ / fmt::format("{}_refined_{}.toml", deck.stem().string(), factor);
+  }
 
  private:
   fs::path path_;
   bool kept_;
 };
 
-/// The decks to run: those that are named, or all of the suite.
-std::vector<fs::path> decks_of(const VerifyOptions& options) {
-  if (!options.decks.empty()) {
-    return {options.decks.begin(), options.decks.end()};
-  }
+/// The suite's decks, in order.
+std::vector<fs::path> suite() {
   std::vector<fs::path> decks;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(FEXP_VERIFICATION_DIRECTORY, error)) {
@@ -98,113 +92,209 @@ std::vector<fs::path> decks_of(const VerifyOptions& options) {
   return decks;
 }
 
-Case load(Ranks& ranks, const fs::path& deck, io::InputFiles& files) {
-  Case loaded = ranks.load(deck, files);
-  ranks.on_first([&] {
-    ErrorList errors;
-    if (loaded.deck.expectations.empty()) {
-      errors.add({deck.string()}, "the deck has no [[expect]]", "one for each number to be verified",
-                 "add [[expect]], or use \"fexp run\"");
-    }
-    errors.throw_if_any();
-  });
-  return loaded;
+/// Whether a case such as "07_time_reversal" has that number.
+bool is_numbered(const std::string& known, const std::string& number) {
+  const std::string digits = known.substr(0, known.find('_'));
+  return digits == number || digits == "0" + number;
 }
 
-/// Rows of one deck's expectations from the histories that its run has written.
-void evaluate(const Case& loaded, const fs::path& deck, const io::RunDirectory& directory, std::vector<Row>& rows) {
+/// The decks that are named: files, or cases of the suite by their names or numbers.
+std::vector<fs::path> named_decks(const std::vector<std::string>& names) {
+  std::vector<fs::path> decks;
   ErrorList errors;
-  for (const io::Expectation& expected : loaded.deck.expectations) {
-    const fs::path file = directory.history(expected.history);
-    if (!fs::exists(file)) {
-      errors.add(expected.place, fmt::format("expect \"{}\": the run has no {}.csv", expected.name, expected.history),
-                 "a history that the run writes", "name node sets or bodies under [output]");
+  for (const std::string& name : names) {
+    const fs::path path(name);
+    if (path.extension() == ".toml" || fs::exists(path)) {
+      decks.push_back(path);
       continue;
     }
-    Row row{deck.string(), loaded.deck.title, loaded.model.element_count(), expected, 0.0, 0.0};
-    row.result = io::expected_number(expected, io::read_csv(file), errors);
-    row.error = io::error_of(expected, row.result);
-    rows.push_back(std::move(row));
+    std::vector<std::string> known;
+    const std::size_t before = decks.size();
+    for (const fs::path& deck : suite()) {
+      known.push_back(deck.stem().string());
+      if (known.back() == name || is_numbered(known.back(), name)) {
+        decks.push_back(deck);
+      }
+    }
+    if (decks.size() == before) {
+      errors.add({}, fmt::format("there is no case \"{}\"", name), fmt::format("{}", fmt::join(known, ", ")),
+                 "name a case by its name or number, or a deck by its file");
+    }
+  }
+  errors.throw_if_any();
+  return decks;
+}
+
+void check_case(const Case& loaded, const fs::path& deck) {
+  ErrorList errors;
+  if (loaded.deck.expectations.empty()) {
+    errors.add({deck.string()}, "the deck has no [[expect]]", "one for each number to be verified",
+               "add [[expect]], or use \"fexp run\"");
+  }
+  if (!loaded.deck.verify.meshes.empty() && loaded.deck.refinement.factor != 1.0) {
+    errors.add(loaded.deck.refinement.place, "the deck refines its meshes, and verify.meshes does so, too",
+               "one of the two", "remove [refinement], and give the bodies' meshes the cells");
   }
   errors.throw_if_any();
 }
 
-std::string row_text(const Row& row) {
-  const io::Expectation& e = row.expected;
-  return fmt::format("  {}  {}: {:.6g}, expected {:.6g}{}, error {:.2g} {} {:.2g}\n", row.good() ? "ok   " : "WRONG",
-                     e.name, row.result, e.reference, e.source.empty() ? "" : fmt::format(" ({})", e.source), row.error,
-                     row.good() ? "<=" : ">", e.tolerance);
-}
+/// Runs cases one after the other.
+class Verifier {
+ public:
+  Verifier(const VerifyOptions& options, Ranks& ranks) : options_(options), ranks_(ranks), runs_(options.out) {}
 
-nlohmann::ordered_json row_json(const Row& row) {
-  const io::Expectation& e = row.expected;
-  return {{"deck", row.deck},         {"title", row.title},       {"elements", row.elements},
-          {"quantity", e.name},       {"reference", e.reference}, {"source", e.source},
-          {"result", row.result},     {"error", row.error},       {"relative", e.reference != 0.0},
-          {"tolerance", e.tolerance}, {"good", row.good()}};
-}
-
-ExitCode verify_all(const VerifyOptions& options, Ranks& ranks) {
-  const RunsDirectory runs(options.out);
-  const SignalWatch watch;
-  std::vector<Row> rows;
-  std::vector<std::string> stopped;  // Decks whose runs did not come to their end
-  for (const fs::path& deck : decks_of(options)) {
-    io::InputFiles files;
-    const Case loaded = load(ranks, deck, files);
-    io::RunDirectory directory("");
-    ranks.on_first([&] { directory = io::RunDirectory::create(deck, loaded.deck_bytes, runs.of(deck), true); });
-    if (!options.json && ranks.is_first()) {
-      print_out(fmt::format("{}: {}, {} elements\n", deck.string(),
-                            loaded.deck.title.empty() ? "no title" : loaded.deck.title, loaded.model.element_count()));
+  ExitCode run() {
+    const bool named = !options_.cases.empty();
+    const std::vector<fs::path> decks = named ? named_decks(options_.cases) : suite();
+    for (const fs::path& deck : decks) {
+      width_ = std::max(width_, deck.stem().string().size());
     }
+    for (const fs::path& deck : decks) {
+      const ExitCode code = run_case(deck, named);
+      if (code != ExitCode::done) {
+        return code;
+      }
+    }
+    if (!ranks_.is_first()) {
+      return ExitCode::done;
+    }
+    print(sum_text(findings_));
+    if (options_.json) {
+      print_json(to_json(findings_));
+    }
+    if (runs_.is_kept()) {
+      io::write_atomically(runs_.table(), to_json(findings_).dump(2) + "\n");
+    }
+    return findings_.wrong() == 0 && findings_.stopped.empty() ? ExitCode::done : ExitCode::different;
+  }
+
+ private:
+  /// One case on its own mesh, or on all of its meshes.
+  ExitCode run_case(const fs::path& deck, bool named) {
+    io::InputFiles files;
+    const Case loaded = ranks_.load(deck, files);
+    ranks_.on_first([&] { check_case(loaded, deck); });
+    const io::VerifySettings& settings = loaded.deck.verify;
+    if (settings.is_long && !named && !options_.all) {
+      return ExitCode::done;
+    }
+    std::vector<double> factors{1.0};
+    if (options_.all && !settings.meshes.empty()) {
+      factors = settings.meshes;
+    }
+    rows_.clear();
+    for (const double factor : factors) {
+      const ExitCode code = factor == 1.0 ? run_deck(loaded, deck, deck, factor) : run_refined(loaded, deck, factor);
+      if (code != ExitCode::done) {
+        return code;
+      }
+    }
+    for (VerifySeries& series : series_of(rows_)) {
+      print(series_text(series, width_));
+      findings_.series.push_back(std::move(series));
+    }
+    std::ranges::move(rows_, std::back_inserter(findings_.rows));
+    return ExitCode::done;
+  }
+
+  ExitCode run_refined(const Case& loaded, const fs::path& deck, double factor) {
+    const fs::path refined = runs_.refined_deck(deck, factor);
+    ranks_.on_first([&] {
+      fs::create_directories(refined.parent_path());
+      io::write_atomically(refined, loaded.deck_bytes + fmt::format("\n[refinement]\nfactor = {}\n", factor));
+    });
+    io::InputFiles files;
+    return run_deck(ranks_.load(refined, files), refined, deck, factor);
+  }
+
+  /// Runs `path`, which is `deck` refined by the factor. Rows that a fault leaves out are told.
+  ExitCode run_deck(const Case& loaded, const fs::path& path, const fs::path& deck, double factor) {
+    if (!std::exchange(headed_, true)) {
+      print(head_text(width_));
+    }
+    io::RunDirectory directory("");
+    ranks_.on_first([&] { directory = io::RunDirectory::create(path, loaded.deck_bytes, runs_.run_of(path), true); });
     DriveSettings settings;
     settings.quiet = true;
     RunEnd end;
-    const ExitCode code = drive({ranks, loaded, directory, settings}, end);
+    const ExitCode code = drive({ranks_, loaded, directory, settings}, end);
     if (end.reason == EndReason::fault) {
-      stopped.push_back(deck.string());
-      continue;
+      findings_.stopped.push_back(path.stem().string());
+      print(fmt::format("{:<{}} {:>8}  stopped before its end\n", deck.stem().string(), width_,
+                        loaded.model.element_count()));
+      return ExitCode::done;
     }
     if (end.reason != EndReason::completed) {
       return code;
     }
-    ranks.on_first([&] {
-      const std::size_t before = rows.size();
-      evaluate(loaded, deck, directory, rows);
-      for (std::size_t i = before; i < rows.size() && !options.json; ++i) {
-        print_out(row_text(rows[i]));
-      }
-    });
-  }
-  const auto wrong = std::ranges::count_if(rows, [](const Row& row) { return !row.good(); });
-  if (!ranks.is_first()) {
+    ranks_.on_first([&] { evaluate(loaded, directory, deck, factor); });
     return ExitCode::done;
   }
-  if (options.json) {
-    nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    std::ranges::transform(rows, std::back_inserter(all), row_json);
-    print_json({{"rows", std::move(all)}, {"wrong", wrong}, {"stopped", stopped}});
-  } else {
-    print_out(fmt::format("{} of {} results are as expected{}\n", static_cast<std::ptrdiff_t>(rows.size()) - wrong,
-                          rows.size(), stopped.empty() ? "" : fmt::format("; {} runs stopped", stopped.size())));
+
+  /// Rows of one run's expectations from the histories that it has written.
+  void evaluate(const Case& loaded, const io::RunDirectory& directory, const fs::path& deck, double factor) {
+    ErrorList errors;
+    for (const io::Expectation& expected : loaded.deck.expectations) {
+      if (!io::in_series(expected) && expected.mesh != factor) {
+        continue;
+      }
+      const fs::path file = directory.history(expected.history);
+      if (!fs::exists(file)) {
+        errors.add(expected.place, fmt::format("expect \"{}\": the run has no {}.csv", expected.name, expected.history),
+                   "a history that the run writes", "name node sets or bodies under [output]");
+        continue;
+      }
+      VerifyRow row{deck.stem().string(),
+                    deck.string(),
+                    loaded.deck.title,
+                    loaded.model.element_count(),
+                    factor,
+                    expected,
+                    0.0,
+                    0.0};
+      row.result = io::expected_number(expected, io::read_csv(file), errors);
+      row.error = io::error_of(expected, row.result);
+      print(row_text(row, width_));
+      rows_.push_back(std::move(row));
+    }
+    errors.throw_if_any();
   }
-  return wrong == 0 && stopped.empty() ? ExitCode::done : ExitCode::different;
-}
+
+  void print(const std::string& text) const {
+    if (!options_.json && ranks_.is_first()) {
+      print_out(text);
+    }
+  }
+
+  const VerifyOptions& options_;
+  Ranks& ranks_;
+  RunsDirectory runs_;
+  SignalWatch watch_;
+  std::size_t width_{};
+  bool headed_{};
+  std::vector<VerifyRow> rows_;  // Of the present case
+  VerifyFindings findings_;
+};
 
 std::function<ExitCode()> declare(CLI::App& app) {
   auto options = std::make_shared<VerifyOptions>();
-  app.add_option("DECK", options->decks, "Decks with [[expect]]; those of fexp's own suite when left out");
-  app.add_option("--out", options->out, "Directory for the runs; removed afterwards when left out")->option_text("DIR");
+  app.add_option(
+      "CASE", options->cases,
+      "Cases of fexp's own suite by name or number, or decks with [[expect]]; the whole suite when left out");
+  app.add_flag("--all", options->all, "Run long cases too, and the refined meshes of all: minutes instead of seconds");
+  app.add_option("--out", options->out, "Directory for the runs and the table; removed afterwards when left out")
+      ->option_text("DIR");
   add_threads_option(app, options->threads);
   add_json_option(app, options->json, "Print the table as JSON, and nothing else, on the standard output");
-  return [options] { return with_ranks(options->threads, [&](Ranks& ranks) { return verify_all(*options, ranks); }); };
+  return
+      [options] { return with_ranks(options->threads, [&](Ranks& ranks) { return Verifier(*options, ranks).run(); }); };
 }
 
 }  // namespace
 
 const Command verify_command{"verify", "Run decks and hold their results against references",
                              "  fexp verify                             fexp's own verification suite\n"
+                             "  fexp verify --all 17 22                 two of its cases, with refined meshes\n"
                              "  fexp verify my_bracket.toml --out runs  decks of your own, with [[expect]]",
                              declare};
 

@@ -14,6 +14,26 @@ constexpr Index piece = 1024;
 
 double ratio(double value, double largest) noexcept { return largest > 0.0 ? std::sqrt(value / largest) : 0.0; }
 
+/// Takes components along the given directions out of translations and rotations: what is prescribed neither waits for
+/// balance nor moves freely, and its reaction is no unbalanced force.
+class FreePart {
+ public:
+  FreePart(const model::Model& model, Index body) : model_(model), range_(model.bodies[at(body)].prescribed) {}
+
+  void reduce(Index node, Vec3d& linear, Vec3d& angular) const {
+    const auto begin = model_.prescribed.begin() + range_.begin, end = model_.prescribed.begin() + range_.end;
+    for (auto p = std::lower_bound(begin, end, node, [](const auto&a, Index n) { return a.node < n; });
+         p != end && p->node == node; ++p) {
+      Vec3d& part = p->dof < 3 ? linear : angular;
+      part -= dot(part, p->direction) * p->direction;
+    }
+  }
+
+ private:
+  const model::Model& model_;
+  IndexRange range_;
+};
+
 RelaxationSums plus(RelaxationSums a, const RelaxationSums& b) noexcept { return a += b; }
 
 }  // namespace
@@ -28,17 +48,23 @@ RelaxationSums& RelaxationSums::operator+=(const RelaxationSums& other) noexcept
 
 RelaxationSums relaxation_sums(const model::Model& model, const model::State& before, const model::State& state,
                                Index body) {
+  const FreePart free(model, body);
   const auto sum = [&](Index begin, Index end) {
     RelaxationSums part;
     for (Index n = begin; n < end; ++n) {
       const double mass = model.mass[at(n)], inertia = model.inertia[at(n)];
-      const model::NodeMotion& motion = state.motion[at(n)];
-      const model::NodeAcceleration& a = state.acceleration[at(n)];
-      const Vec3d way = motion.position - before.motion[at(n)].position;
-      part.unbalanced += mass * dot(a.linear, a.linear) + inertia * dot(a.angular, a.angular);
-      part.kinetic +=
-          mass * dot(motion.velocity, motion.velocity) + inertia * dot(motion.rotation_rate, motion.rotation_rate);
-      part.stiffness -= mass * dot(way, a.linear - before.acceleration[at(n)].linear);
+      Vec3d force = state.acceleration[at(n)].linear, moment = state.acceleration[at(n)].angular;
+      Vec3d velocity = state.motion[at(n)].velocity, rate = state.motion[at(n)].rotation_rate;
+      Vec3d way = state.motion[at(n)].position - before.motion[at(n)].position;
+      Vec3d change = force - before.acceleration[at(n)].linear;
+      Vec3d no_rotation;
+      free.reduce(n, force, moment);
+      free.reduce(n, velocity, rate);
+      free.reduce(n, way, no_rotation);
+      free.reduce(n, change, no_rotation);
+      part.unbalanced += mass * dot(force, force) + inertia * dot(moment, moment);
+      part.kinetic += mass * dot(velocity, velocity) + inertia * dot(rate, rate);
+      part.stiffness -= mass * dot(way, change);
       part.displacement += mass * dot(way, way);
     }
     return part;

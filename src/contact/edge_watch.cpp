@@ -222,7 +222,7 @@ void EdgeWatch::push(model::EdgeSide& known, const Pair& p, const Vec3d& drag_be
       push.force[end] -= push.energy * sharpness.end[end];
       steepest = std::max(steepest, norm(sharpness.end[end]));
     }
-    push.stiffness += 2.0 * stiff * depth.value * steepest;
+    push.stiffness += 4.0 * stiff * depth.value * steepest;
     if (sharpness.corner >= 0) {
       push.corner = corner[static_cast<std::size_t>(sharpness.corner)];
       push.corner_force = -push.energy * sharpness.by_corner;

@@ -138,6 +138,8 @@ Deck parse_deck(std::string_view text, const std::string& file, ErrorList& error
     }
     for_each_section(deck, sections);
     sections.check_keys({"title"});
+    check_expectations(deck.verify, deck.expectations, found);
+    refine_meshes(deck.refinement, deck.description.bodies, found);
     if (!found.empty() && sections.complete()) {
       add_reference_errors(deck.description, fields, found);
     }

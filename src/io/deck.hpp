@@ -12,6 +12,7 @@
 #include "io/expectation.hpp"
 #include "io/history.hpp"
 #include "io/input_files.hpp"
+#include "io/refinement.hpp"
 #include "model/description.hpp"
 #include "model/mesh.hpp"
 #include "model/model.hpp"
@@ -50,13 +51,15 @@ struct Deck {
   std::string title;
   UnitNames units;
   model::Description description;
+  Refinement refinement;
   OutputSettings output;
+  VerifySettings verify;
   std::vector<Expectation> expectations;
 };
 
-/// Reads a deck from text. `file` is the name used in errors. Everything wrong is added to `errors`; the deck is usable
-/// only when nothing was. Mesh files are not read here. References from one table to another are left to
-/// model::build_model, unless something else is wrong and no model will be built.
+/// Reads a deck from text; its meshes are refined already. `file` is the name used in errors. Everything wrong is added
+/// to `errors`; the deck is usable only when nothing was. Mesh files are not read here. References from one table to
+/// another are left to model::build_model, unless something else is wrong and no model will be built.
 [[nodiscard]] Deck parse_deck(std::string_view text, const std::string& file, ErrorList& errors);
 
 /// Generates or reads the mesh of every body, in order; a path is relative to `directory`, that of the deck. A body

@@ -21,9 +21,12 @@ void for_each_section(SomeDeck& deck, Visitor& visitor) {
   visitor.list("section", "Thickness and material of shells.", optional, d.sections);
   visitor.list("body", "A set of shells that moves as a connected piece. Placement: scale, rotate, translate, array.",
                required, d.bodies);
+  visitor.table("refinement", "Finer or coarser meshes than the bodies say.", optional, deck.refinement);
   visitor.list("node_set",
                "Named nodes: those of the bodies that satisfy every selection given. The set \"all\" is there already.",
                optional, d.node_sets);
+  visitor.list("initial_velocity", "Velocities at the start, added to those of the bodies and of other such tables.",
+               optional, d.initial_velocities);
   visitor.list("fixed", "Degrees of freedom that are held at rest.", optional, d.fixed);
   visitor.list("prescribed",
                "A motion prescribed on one degree of freedom: its velocity, displacement or acceleration.", optional,
@@ -47,6 +50,7 @@ void for_each_section(SomeDeck& deck, Visitor& visitor) {
                 d.contact);
   visitor.table("output", "What to write and how often. Frames and rows stand at the start and the end, too.", optional,
                 deck.output);
+  visitor.table("verify", "How \"fexp verify\" runs the deck.", optional, deck.verify);
   visitor.list("expect", "A number that \"fexp verify\" takes from the histories and holds against a reference.",
                optional, deck.expectations);
 }

@@ -2,11 +2,14 @@
 #include "io/expectation.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -48,19 +51,32 @@ double number_in(std::string_view cell) {
   return error == std::errc() && end == cell.data() + cell.size() ? value : no_number;
 }
 
-/// Columns that rows are chosen by, and what must stand in them.
-std::vector<std::pair<std::string, std::string>> selections(const Expectation& e) {
-  std::vector<std::pair<std::string, std::string>> chosen;
-  if (!e.set.empty()) {
-    chosen.emplace_back("set", e.set);
+/// What is taken from a history: a column, and the rows by what must stand in others.
+struct Selection {
+  std::string column;
+  std::vector<std::pair<std::string, std::string>> rows;
+};
+
+Selection selection_of(const std::string& column, const std::string& set, const std::string& body, int node) {
+  Selection selection{column, {}};
+  if (!set.empty()) {
+    selection.rows.emplace_back("set", set);
   }
-  if (!e.body.empty()) {
-    chosen.emplace_back("body", e.body);
+  if (!body.empty()) {
+    selection.rows.emplace_back("body", body);
   }
-  if (e.node != Expectation::any_node) {
-    chosen.emplace_back("node", std::to_string(e.node));
+  if (node != Expectation::any_node) {
+    selection.rows.emplace_back("node", std::to_string(node));
   }
-  return chosen;
+  return selection;
+}
+
+Selection minuend(const Expectation& e) { return selection_of(e.column, e.set, e.body, e.node); }
+
+Selection subtrahend(const Expectation& e) {
+  const Subtrahend& m = *e.minus;
+  return selection_of(m.column.empty() ? e.column : m.column, m.set.empty() ? e.set : m.set,
+                      m.body.empty() ? e.body : m.body, m.node.value_or(e.node));
 }
 
 /// One value from those of a moment.
@@ -83,24 +99,24 @@ class Gathering {
   int count_{};
 };
 
-/// The value at every time that has rows which the expectation chooses.
-Course course_of(const Expectation& e, const CsvTable& table, ErrorList& errors) {
+/// The value at every time that has rows which the selection chooses.
+Course course_of(const Expectation& e, const Selection& selection, const CsvTable& table, ErrorList& errors) {
   const auto lacks = [&](const std::string& name) {
     errors.add(e.place, fmt::format("expect \"{}\": {}.csv has no column \"{}\"", e.name, e.history, name),
                column_names(table), "correct the name, or choose another history");
   };
-  const std::optional<std::size_t> time = find_column(table, "time"), value = find_column(table, e.column);
+  const std::optional<std::size_t> time = find_column(table, "time"), value = find_column(table, selection.column);
   std::vector<std::pair<std::size_t, std::string>> chosen;
-  for (auto& [name, wanted] : selections(e)) {
+  for (const auto& [name, wanted] : selection.rows) {
     const std::optional<std::size_t> column = find_column(table, name);
     if (!column) {
       lacks(name);
       return {};
     }
-    chosen.emplace_back(*column, std::move(wanted));
+    chosen.emplace_back(*column, wanted);
   }
   if (!time || !value) {
-    lacks(time ? e.column : "time");
+    lacks(time ? selection.column : "time");
     return {};
   }
   Course course;
@@ -112,9 +128,8 @@ Course course_of(const Expectation& e, const CsvTable& table, ErrorList& errors)
   };
   for (const std::vector<std::string>& row : table.rows) {
     const double when = number_in(row[*time]);
-    const bool taken = when >= e.from && std::ranges::all_of(chosen, [&](const auto& selection) {
-                         return row[selection.first] == selection.second;
-                       });
+    const bool taken = when >= e.from && (e.until < 0.0 || when <= e.until) &&
+                       std::ranges::all_of(chosen, [&](const auto& one) { return row[one.first] == one.second; });
     if (!taken) {
       continue;
     }
@@ -128,10 +143,63 @@ Course course_of(const Expectation& e, const CsvTable& table, ErrorList& errors)
   close();
   if (course.empty()) {
     errors.add(e.place, fmt::format("expect \"{}\": no row of {}.csv is chosen", e.name, e.history),
-               "rows of the set, body and node from the time on",
+               "rows of the set, body and node between the times",
                "name the set or body under [output], or correct the selection");
   }
   return course;
+}
+
+/// Takes the values of the rows that the expectation subtracts.
+void subtract(const Expectation& e, const CsvTable& table, Course& course, ErrorList& errors) {
+  const Course other = course_of(e, subtrahend(e), table, errors);
+  if (other.size() != course.size()) {  // Only where rows are missing, which is an error already.
+    course.clear();
+    return;
+  }
+  for (std::size_t i = 0; i < course.size(); ++i) {
+    course[i].second -= other[i].second;
+  }
+}
+
+void divide_by_first(const Expectation& e, Course& course, ErrorList& errors) {
+  const double first = course.front().second;
+  if (first == 0.0) {
+    errors.add(e.place, fmt::format("expect \"{}\": the first value is 0", e.name), "a first value that is not 0",
+               "remove relative_to_first, or begin later with from");
+    course.clear();
+    return;
+  }
+  for (auto& [time, value] : course) {
+    value /= first;
+  }
+}
+
+/// Times at which the course passes the level, upwards or in both directions.
+std::vector<double> crossings(const Course& course, double level, bool upwards_only) {
+  std::vector<double> times;
+  for (std::size_t i = 1; i < course.size(); ++i) {
+    const auto& [t0, v0] = course[i - 1];
+    const auto& [t1, v1] = course[i];
+    const bool up = v0 < level && v1 >= level, down = v0 > level && v1 <= level;
+    if (up || (down && !upwards_only)) {
+      times.push_back(t0 + (t1 - t0) * (level - v0) / (v1 - v0));
+    }
+  }
+  return times;
+}
+
+double crossing_or_period(const Expectation& e, const Course& course, ErrorList& errors) {
+  const bool period = e.over_time == "period";
+  const std::vector<double> times = crossings(course, e.level, period);
+  const std::size_t fewest = period ? 2 : 1;
+  if (times.size() < fewest) {
+    errors.add(e.place,
+               fmt::format("expect \"{}\": the level {:g} is passed {}{} times", e.name, e.level,
+                           period ? "upwards " : "", times.size()),
+               fmt::format("{} or more", fewest), "correct the level, or the duration of the run");
+    return no_number;
+  }
+  return period ? (times.back() - times.front()) / static_cast<double>(times.size() - 1) : times.front();
 }
 
 double value_at(const Expectation& e, const Course& course, ErrorList& errors) {
@@ -150,15 +218,60 @@ double value_at(const Expectation& e, const Course& course, ErrorList& errors) {
   return before->second + part * (after->second - before->second);
 }
 
+void check_meshes(const VerifySettings& settings, ErrorList& errors) {
+  const std::vector<double>& meshes = settings.meshes;
+  const bool ascending = std::ranges::adjacent_find(meshes, std::ranges::greater_equal{}) == meshes.end();
+  if (!meshes.empty() && (meshes.size() < 2 || !ascending || std::ranges::find(meshes, 1.0) == meshes.end())) {
+    errors.add(settings.place, fmt::format("verify.meshes is [{}]", fmt::join(meshes, ", ")),
+               "two or more factors, ascending, 1 among them", "correct the factors, or remove the list");
+  }
+}
+
+/// Whether an order can be told without a reference: the last three meshes are refined by one ratio.
+bool has_three_meshes(const std::vector<double>& meshes) {
+  const std::size_t n = meshes.size();
+  return n >= 3 && meshes[n - 1] * meshes[n - 3] == meshes[n - 2] * meshes[n - 2];
+}
+
 }  // namespace
 
+void check_expectations(const VerifySettings& settings, std::span<const Expectation> expectations, ErrorList& errors) {
+  check_meshes(settings, errors);
+  const std::vector<double>& meshes = settings.meshes;
+  for (const Expectation& e : expectations) {
+    if (!in_series(e) && e.mesh != 1.0 && std::ranges::find(meshes, e.mesh) == meshes.end()) {
+      errors.add(e.place, fmt::format("expect \"{}\": the mesh refined by {:g} is not run", e.name, e.mesh),
+                 fmt::format("1{}{}", meshes.empty() ? "" : ", or one of ", fmt::join(meshes, ", ")),
+                 "add the factor to verify.meshes, or correct it");
+    }
+    if (e.least_order >= 0.0 && (!in_series(e) || meshes.empty())) {
+      errors.add(e.place, fmt::format("expect \"{}\": least_order is given without refined meshes", e.name),
+                 "an order where verify.meshes is given and mesh is not", "add verify.meshes, or remove least_order");
+    } else if (e.least_order >= 0.0 && !e.exact && !has_three_meshes(meshes)) {
+      errors.add(e.place,
+                 fmt::format("expect \"{}\": no order follows from the meshes [{}]", e.name, fmt::join(meshes, ", ")),
+                 "an exact reference, or three meshes at least, the last three refined by one ratio",
+                 "set exact = true where meshes converge to the reference, or correct verify.meshes");
+    }
+  }
+}
+
 double expected_number(const Expectation& e, const CsvTable& history, ErrorList& errors) {
-  const Course course = course_of(e, history, errors);
+  Course course = course_of(e, minuend(e), history, errors);
+  if (e.minus && !course.empty()) {
+    subtract(e, history, course, errors);
+  }
+  if (e.relative_to_first && !course.empty()) {
+    divide_by_first(e, course, errors);
+  }
   if (course.empty()) {
     return no_number;
   }
   if (e.over_time == "at") {
     return value_at(e, course, errors);
+  }
+  if (e.over_time == "crossing" || e.over_time == "period") {
+    return crossing_or_period(e, course, errors);
   }
   if (e.over_time == "first") {
     return course.front().second;
@@ -166,17 +279,17 @@ double expected_number(const Expectation& e, const CsvTable& history, ErrorList&
   if (e.over_time == "last") {
     return course.back().second;
   }
-  double sum = 0.0, smallest = HUGE_VAL, largest = -HUGE_VAL;
-  for (const auto& [time, value] : course) {
-    sum += value;
-    smallest = std::min(smallest, value);
-    largest = std::max(largest, value);
-  }
   if (e.over_time == "mean") {
+    const double sum = std::accumulate(course.begin(), course.end(), 0.0,
+                                       [](double part, const auto& point) { return part + point.second; });
     return sum / static_cast<double>(course.size());
   }
-  const bool low = e.over_time == "smallest" || (e.over_time == "farthest" && -smallest > largest);
-  return low ? smallest : largest;
+  const auto [low, high] = std::ranges::minmax_element(course, {}, &std::pair<double, double>::second);
+  if (e.over_time == "smallest" || e.over_time == "largest") {
+    return e.over_time == "smallest" ? low->second : high->second;
+  }
+  const auto& farthest = -low->second > high->second ? *low : *high;
+  return e.over_time == "farthest" ? farthest.second : farthest.first;
 }
 
 double error_of(const Expectation& e, double result) noexcept {

@@ -141,7 +141,12 @@ class FieldReader {
     out.clear();
     out.reserve(items->size());
     for (std::size_t i = 0; i < items->size(); ++i) {
+      const std::size_t errors = errors_.size();
       read((*items)[i], item_path(path, i), limits, out.emplace_back());
+      // A value that stands for a wrong one could be taken for another mistake.
+      if (!HasFields<T> && errors_.size() != errors) {
+        out.pop_back();
+      }
     }
   }
   template <class T, std::size_t Capacity>

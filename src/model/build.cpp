@@ -10,6 +10,7 @@
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
 #include "model/build_rigid.hpp"
+#include "model/condition_lookup.hpp"
 #include "model/element_shares.hpp"
 #include "model/node_sets.hpp"
 #include "model/topology.hpp"
@@ -209,6 +210,37 @@ void build_velocities(const Description& description, Model& model) {
   });
 }
 
+/// Adds the velocities of node sets.
+void add_velocities(const Description& description, Model& model, ErrorList& errors) {
+  for (const InitialVelocity& given : description.initial_velocities) {
+    const Vec3d axis = (1.0 / norm(given.axis)) * given.axis;
+    for (const Index n : Lookup(model).nodes(given.set)) {
+      const Body& body = model.bodies[at(model.node_body[at(n)])];
+      if (description.bodies[at(body.description)].rigid) {
+        errors.add(
+            given.place,
+            fmt::format("velocity of set \"{}\": it has nodes of body \"{}\", which is rigid", given.set, body.name),
+            "no nodes of rigid bodies", "give the velocity in the [[body]]");
+        break;
+      }
+      const Vec3d from_point = model.reference_position[at(n)] - given.point;
+      const Vec3d from_axis = from_point - dot(from_point, axis) * axis;
+      const double distance = norm(from_axis);
+      if (given.radial != 0.0 && !(distance > 0.0)) {
+        errors.add(given.place,
+                   fmt::format("radial velocity of set \"{}\": node {} of body \"{}\" lies on the axis", given.set,
+                               model.node_label[at(n)], model.bodies[at(model.node_body[at(n)])].name),
+                   "nodes beside the axis", "take the node out of the set, or correct axis and point");
+        break;
+      }
+      model.initial_velocity[at(n)] += given.velocity;
+      if (given.radial != 0.0) {
+        model.initial_velocity[at(n)] += (given.radial / distance) * from_axis;
+      }
+    }
+  }
+}
+
 /// Names the first node of each described body whose mass or penalty stiffness is no positive finite number.
 void check_masses(const Description& description, const Model& model, ErrorList& errors) {
   Index reported = no_index;
@@ -283,6 +315,7 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   build_masses(description, model);
   check_masses(description, model, errors);
   build_velocities(description, model);
+  add_velocities(description, model, errors);
   build_rigid_bodies(description, model);
   build_exclusions(description, model, errors);
   build_conditions(description, meshes, model, errors);

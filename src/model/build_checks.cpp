@@ -307,7 +307,14 @@ void check_description(const Description& description, ErrorList& errors) {
                  "correct the normal");
     }
   }
+  for (const InitialVelocity& given : description.initial_velocities) {
+    if (!has_direction(given.axis)) {
+      errors.add(given.place, fmt::format("the axis of the velocity of set \"{}\" has no direction", given.set),
+                 "a vector that is not zero", "correct the axis");
+    }
+  }
   ReferenceChecks references(description, errors);
+  references(description.initial_velocities);
   references(description.fixed);
   references(description.prescribed);
   references(description.symmetry);

@@ -166,6 +166,24 @@ struct BodyDescription {
   };
 };
 
+/// Velocities of a node set at the start, besides those of its bodies and of other such tables.
+struct InitialVelocity {
+  std::string set;
+  Vec3d velocity{};           ///< [length/time]
+  double radial{};            ///< Away from the axis [length/time]
+  Vec3d axis{0.0, 0.0, 1.0};  ///< Of `radial`
+  Vec3d point{};              ///< A point of the axis [length]
+  Place place;
+
+  static constexpr auto fields = std::tuple{
+      Field{"set", "-", "Node set.", &InitialVelocity::set, any_number, Presence::required},
+      Field{"velocity", "length/time", "Velocity of each node of the set.", &InitialVelocity::velocity},
+      Field{"radial", "length/time", "Velocity away from an axis; negative: towards it.", &InitialVelocity::radial},
+      Field{"axis", "-", "Direction of that axis (any length but zero).", &InitialVelocity::axis},
+      Field{"point", "length", "A point of that axis.", &InitialVelocity::point},
+  };
+};
+
 struct BoxSelection {
   Vec3d low{};
   Vec3d high{};
@@ -491,6 +509,7 @@ struct Description {
   std::vector<Section> sections;
   std::vector<BodyDescription> bodies;
   std::vector<NodeSet> node_sets;
+  std::vector<InitialVelocity> initial_velocities;
   std::vector<Fixed> fixed;
   std::vector<Prescribed> prescribed;
   std::vector<Symmetry> symmetry;

@@ -115,10 +115,17 @@ Mesh make(const UvSphere& s) {
 
 Mesh make(const Plate& p) {
   LatticeMesh mesh;
-  const auto node = [&](int i, int j) {
-    // Lattice points are doubled so that centres of crossed cells have one of their own.
-    return mesh.node({i, j, 0}, {p.length_x * i / (2.0 * p.cells_x), p.length_y * j / (2.0 * p.cells_y), 0.0});
+  const auto position = [&](int i, int j) -> Vec3d {
+    const double x = p.length_x * i / (2.0 * p.cells_x), y = p.length_y * j / (2.0 * p.cells_y);
+    if (p.twist_degrees == 0.0) {
+      return {x, y, 0.0};
+    }
+    const double angle = p.twist_degrees * std::numbers::pi / 180.0 * i / (2.0 * p.cells_x);
+    const double middle = 0.5 * p.length_y, beside = y - middle;
+    return {x, middle + beside * cosine(angle), beside * sine(angle)};
   };
+  // Lattice points are doubled so that centres of crossed cells have one of their own.
+  const auto node = [&](int i, int j) { return mesh.node({i, j, 0}, position(i, j)); };
   for (int j = 0; j < p.cells_y; ++j) {
     for (int i = 0; i < p.cells_x; ++i) {
       const Index a = node(2 * i, 2 * j), b = node(2 * i + 2, 2 * j);
@@ -148,6 +155,28 @@ Mesh make(const Cylinder& c) {
   for (int k = 0; k < c.cells_along; ++k) {
     for (int i = 0; i < c.cells_around; ++i) {
       mesh.quad({node(i, k), node(i + 1, k), node(i + 1, k + 1), node(i, k + 1)}, false);
+    }
+  }
+  return mesh.take();
+}
+
+Mesh make(const SphericalCap& c) {
+  LatticeMesh mesh;
+  const int n = c.cells;
+  const auto node = [&](int i, int j) {
+    // The square onto the unit disc, lines onto ellipses.
+    const double p = static_cast<double>(2 * i - n) / n, q = static_cast<double>(2 * j - n) / n;
+    const double u = p * std::sqrt(1.0 - 0.5 * q * q), v = q * std::sqrt(1.0 - 0.5 * p * p);
+    const double r = std::sqrt(u * u + v * v);
+    const double polar = c.angle_degrees * std::numbers::pi / 180.0 * r;
+    const double across = r > 0.0 ? c.radius * sine(polar) / r : 0.0;
+    return mesh.node({i, j, 0}, {across * u, across * v, c.radius * cosine(polar)});
+  };
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      // Diagonals point to the middle: at the square's corners, two sides lie in line on the rim.
+      const bool other = (2 * i + 1 < n) == (2 * j + 1 < n);
+      mesh.quad({node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)}, !other);
     }
   }
   return mesh.take();
@@ -202,6 +231,7 @@ double count(const CubedSphere& s) { return 12.0 * s.cells * s.cells; }
 double count(const UvSphere& s) { return 2.0 * s.segments * (s.rings - 1.0); }
 double count(const Plate& p) { return (p.diagonals == "crossed" ? 4.0 : 2.0) * p.cells_x * p.cells_y; }
 double count(const Cylinder& c) { return 2.0 * c.cells_around * c.cells_along; }
+double count(const SphericalCap& c) { return 2.0 * c.cells * c.cells; }
 double count(const SquareTube& t) { return 8.0 * t.cells_across * t.cells_along; }
 double count(const OpenBox& b) {
   return 2.0 * b.cells_x * b.cells_y + 4.0 * b.cells_z * (static_cast<double>(b.cells_x) + b.cells_y);

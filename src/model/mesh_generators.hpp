@@ -17,6 +17,7 @@ inline constexpr Range cell_range{1.0, 10000.0, true, true, "1 to 10000"};
 inline constexpr Range ring_range{3.0, 100000.0, true, true, "3 to 100000"};
 inline constexpr std::array<std::string_view, 3> diagonal_names{"one", "alternating", "crossed"};
 inline constexpr Range angle_range{0.0, 360.0, false, true, "> 0 and <= 360"};
+inline constexpr Range cap_range{0.0, 170.0, false, true, "> 0 and <= 170"};
 
 /// Sphere projected from a cube: 12 cells^2 triangles, 6 cells^2 + 2 nodes.
 struct CubedSphere {
@@ -45,7 +46,8 @@ struct UvSphere {
   };
 };
 
-/// Rectangle [0, length_x] x [0, length_y] in z = 0, normal +z.
+/// Rectangle [0, length_x] x [0, length_y] in z = 0, normal +z; or twisted about the line y = length_y / 2, evenly from
+/// nothing at x = 0.
 struct Plate {
   static constexpr std::string_view kind = "plate";
   double length_x{};
@@ -53,6 +55,7 @@ struct Plate {
   int cells_x{8};
   int cells_y{8};
   std::string diagonals{"one"};
+  double twist_degrees{0.0};  ///< At x = length_x, about +x
 
   static constexpr auto fields = std::tuple{
       Field{"length_x", "length", "Extent along x.", &Plate::length_x, positive, Presence::required},
@@ -61,6 +64,9 @@ struct Plate {
       Field{"cells_y", "-", "Cells along y.", &Plate::cells_y, cell_range},
       Field{"diagonals", "-", "How cells are cut: all the one way, the ways alternating, or crossed into four.",
             &Plate::diagonals, Choices(diagonal_names)},
+      Field{"twist_degrees", "degree",
+            "Angle by which the end at length_x is twisted about the middle line along x, against that at 0.",
+            &Plate::twist_degrees},
   };
 };
 
@@ -80,6 +86,22 @@ struct Cylinder {
       Field{"cells_along", "-", "Cells along the axis.", &Cylinder::cells_along, cell_range},
       Field{"angle_degrees", "degree", "Angle covered, from the x axis; less than 360 gives an open panel.",
             &Cylinder::angle_degrees, angle_range},
+  };
+};
+
+/// Cap of a sphere about the origin with its pole on +z: a square of cells drawn onto it, the square's sides on the
+/// rim. Normals point away from the origin.
+struct SphericalCap {
+  static constexpr std::string_view kind = "spherical_cap";
+  double radius{};
+  double angle_degrees{};
+  int cells{8};
+
+  static constexpr auto fields = std::tuple{
+      Field{"radius", "length", "Radius of the mid-surface.", &SphericalCap::radius, positive, Presence::required},
+      Field{"angle_degrees", "degree", "Angle from the pole to the rim.", &SphericalCap::angle_degrees, cap_range,
+            Presence::required},
+      Field{"cells", "-", "Cells from rim to rim.", &SphericalCap::cells, cell_range},
   };
 };
 
@@ -120,7 +142,7 @@ struct OpenBox {
   };
 };
 
-using MeshGenerator = std::variant<CubedSphere, UvSphere, Plate, Cylinder, SquareTube, OpenBox>;
+using MeshGenerator = std::variant<CubedSphere, UvSphere, Plate, Cylinder, SphericalCap, SquareTube, OpenBox>;
 
 /// Number of triangles a generator would make; lets absurd requests be refused before memory is asked for.
 [[nodiscard]] double triangle_count(const MeshGenerator& generator);

@@ -46,7 +46,8 @@ double prescribed_velocity(const model::Model& model, const model::PrescribedNod
 }
 
 PrescribedReport prescribe_velocities(const model::Model& model, model::State& state, Index body, HalfStep half,
-                                      double time, double half_dt) {
+                                      double time, double half_dt, double damping) {
+  const double kept = 1.0 / (1.0 + damping * half_dt);
   PrescribedReport report;
   const IndexRange range = model.bodies[at(body)].prescribed;
   for (Index i = range.begin; i < range.end; ++i) {
@@ -58,12 +59,13 @@ PrescribedReport prescribe_velocities(const model::Model& model, model::State& s
     const double inertia = p.dof < 3 ? model.mass[at(p.node)] : model.inertia[at(p.node)];
     const double present = p.oblique ? dot(rate, p.direction) : *component(rate, p.dof);
     const double kick = half_dt * (p.oblique ? dot(change, p.direction) : *component(change, p.dof));
-    const double before = present - kick;
+    const double undamped = present / kept, before = undamped - kick;
     const Vec3d& start = p.angular() ? model.initial_rotation_rate[at(p.node)] : model.initial_velocity[at(p.node)];
     const double way = dot(motion.position - model.reference_position[at(p.node)], p.direction);
     const double after = prescribed_velocity(model, p, dot(start, p.direction), way, half, time, half_dt);
     const double middle = half == HalfStep::opening ? after : before;
-    report.work += 0.5 * inertia * (after - before) * (after + before) - inertia * kick * middle;
+    const double damped = 0.5 * inertia * (1.0 - kept * kept) * undamped * undamped;
+    report.work += 0.5 * inertia * (after - before) * (after + before) - inertia * kick * middle + damped;
     const Vec3d impulse = (inertia * (after - present)) * p.direction;
     if (p.dof < 3) {
       report.impulse += impulse;

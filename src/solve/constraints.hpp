@@ -26,9 +26,10 @@ enum class HalfStep { opening, closing };
 
 /// Sets prescribed velocities after a half step has been taken with the unconstrained acceleration. `time` is the end
 /// of that half step (mid-step or step end) and `half_dt` its length. The work booked is that of the constraint force
-/// over the step's displacement, so that it stands in the same balance as the other trapezoidal works.
+/// over the step's displacement, so that it stands in the same balance as the other trapezoidal works, and what mass-
+/// proportional damping has been booked for these components with the coefficient `damping` [1/time].
 PrescribedReport prescribe_velocities(const model::Model& model, model::State& state, Index body, HalfStep half,
-                                      double time, double half_dt);
+                                      double time, double half_dt, double damping);
 
 /// Removes held components (fixed, symmetry) from the accelerations and adds the reactions to the body's actions.
 /// Velocities, which start without them, are not touched: evaluating a state again leaves its bits as they are.

@@ -29,6 +29,9 @@ Diagnostics node_sums(const model::Model& model, const model::State& state, Inde
     sum.momenta.angular += orbital + spin;
     sum.momenta.linear_scale += norm(linear);
     sum.momenta.angular_scale += norm(orbital) + norm(spin);
+    const model::NodeAcceleration& acceleration = state.acceleration[at(n)];
+    sum.acceleration_square += mass * dot(acceleration.linear, acceleration.linear) +
+                               inertia * dot(acceleration.angular, acceleration.angular);
   }
   return sum;
 }
@@ -43,6 +46,8 @@ Diagnostics rigid_sums(const model::RigidBody& body, const model::RigidMotion& m
   sum.momenta.angular = orbital + motion.angular_momentum;
   sum.momenta.linear_scale = norm(linear);
   sum.momenta.angular_scale = norm(orbital) + norm(motion.angular_momentum);
+  sum.acceleration_square = dot(motion.force, motion.force) / body.mass +
+                            dot(motion.moment, inverse_inertia_times(body, motion.orientation, motion.moment));
   return sum;
 }
 
@@ -104,6 +109,7 @@ Diagnostics& Diagnostics::operator+=(const Diagnostics& other) noexcept {
   energies += other.energies;
   momenta += other.momenta;
   deleted += other.deleted;
+  acceleration_square += other.acceleration_square;
   return *this;
 }
 

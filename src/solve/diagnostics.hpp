@@ -41,6 +41,9 @@ struct Diagnostics {
   Energies energies;
   Momenta momenta;
   std::int64_t deleted{};  ///< Elements that have failed
+  /// Sum of m a.a + I alpha.alpha: dt^2/8 times this is what central differences take from the energy that they keep
+  /// [mass*length^2/time^4].
+  double acceleration_square{};
 
   Diagnostics& operator+=(const Diagnostics& other) noexcept;
 };

@@ -235,7 +235,8 @@ void IslandSolver::prescribe(const Step& step, HalfStep half) {
   }
   const double time = half == HalfStep::opening ? step.middle_time() : step.end_time;
   for (const Index body : bodies_) {
-    const PrescribedReport report = prescribe_velocities(step.model, step.state, body, half, time, step.half_dt());
+    const PrescribedReport report =
+        prescribe_velocities(step.model, step.state, body, half, time, step.half_dt(), step.damping);
     model::BodyLedger& ledger = step.state.ledger[at(body)];
     ledger.external_work += report.work;
     ledger.external_impulse += report.impulse;

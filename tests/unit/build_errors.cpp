@@ -205,7 +205,7 @@ TEST(build_errors, vectors_without_direction_are_refused) {
   d.symmetry = {{"edge", {}, line_7}};
   expect_one(errors_of(d), {"symmetry plane has no direction"});
   d = good();
-  d.planes = {{"floor", {}, {0.0, std::numeric_limits<double>::quiet_NaN(), 0.0}, -1.0, line_7}};
+  d.planes = {{"floor", {}, {0.0, std::numeric_limits<double>::quiet_NaN(), 0.0}, -1.0, line_7, {}, {}, ""}};
   expect_one(errors_of(d), {"plane \"floor\" has no direction"});
 }
 
@@ -229,6 +229,29 @@ TEST(build_errors, walls_that_move_in_no_way_that_can_be_are_refused) {
   d.cylinders[0].curve.clear();
   d.spheres.push_back({"roll", {}, 1.0, false, -1.0, line_7, {}, {}, ""});
   expect_one(errors_of(d), {"\"roll\" is already that of another wall"});
+}
+
+TEST(build_errors, a_radial_velocity_on_its_axis_and_an_axis_without_direction_are_refused) {
+  InitialVelocity given;
+  given.set = "edge";  // x = 0, y from 0 to 2
+  given.radial = 1.0;
+  given.place = line_7;
+  Description d = good();
+  d.initial_velocities = {given};
+  d.initial_velocities[0].point = {1.0, 1.0, 0.0};
+  EXPECT_TRUE(errors_of(d).empty());
+  d.initial_velocities[0].point = {0.0, 1.0, 3.0};
+  expect_one(errors_of(d), {"radial velocity of set \"edge\"", "lies on the axis"});
+  d.initial_velocities[0].radial = 0.0;
+  EXPECT_TRUE(errors_of(d).empty());
+  d.bodies[0].rigid = true;
+  expect_one(errors_of(d), {"velocity of set \"edge\"", "which is rigid"});
+  d.bodies[0].rigid = false;
+  d.initial_velocities[0].axis = {};
+  expect_one(errors_of(d), {"the axis of the velocity of set \"edge\""});
+  d.initial_velocities[0] = given;
+  d.initial_velocities[0].set = "egde";
+  expect_one(errors_of(d), {"no node set \"egde\"", "edge"});
 }
 
 TEST(build_errors, curves_without_points_with_falling_times_or_no_numbers_are_refused) {

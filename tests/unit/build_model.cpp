@@ -287,6 +287,31 @@ TEST(build_model, spin_about_the_centre_of_mass_adds_no_momentum) {
   }
 }
 
+TEST(build_model, velocities_of_sets_are_added_to_those_of_bodies_and_of_each_other) {
+  auto d = test::description({1.0, 1.0, 0.0}, 0.1);
+  test::add_body(d, "plate", Plate{2.0, 2.0, 2, 2, "one"}).velocity = {1.0, 0.0, 0.0};
+  test::add_box_set(d, "edge", {2.0, 0.0, 0.0}, {2.0, 2.0, 0.0});
+  test::add_box_set(d, "corner", {2.0, 2.0, 0.0}, {2.0, 2.0, 0.0});
+  InitialVelocity edge;
+  edge.set = "edge";
+  edge.velocity = {0.0, 0.0, 3.0};
+  InitialVelocity corner;
+  corner.set = "corner";
+  corner.radial = -5.0;
+  corner.axis = {0.0, 0.0, 2.0};
+  corner.point = {-1.0, -2.0, 7.0};
+  d.initial_velocities = {edge, corner};
+  const Model m = test::build(d);
+  for (Index n = 0; n < m.node_count(); ++n) {
+    const Vec3d& x = m.reference_position[at(n)];
+    Vec3d expected{1.0, 0.0, x.x == 2.0 ? 3.0 : 0.0};
+    if (x.x == 2.0 && x.y == 2.0) {  // Beside the axis by (3, 4)
+      expected += Vec3d{-3.0, -4.0, 0.0};
+    }
+    EXPECT_NEAR(norm(m.initial_velocity[at(n)] - expected), 0.0, 1e-15);
+  }
+}
+
 TEST(build_model, is_the_same_for_any_number_of_threads) {
   Description d = one_body(Plate{3.0, 2.0, 200, 150, "alternating"});
   d.bodies[0].rotate = {{{1.0, 2.0, 3.0}, 25.0, {}}};
@@ -308,7 +333,7 @@ TEST(build_model, is_the_same_for_any_number_of_threads) {
 
 TEST(build_model, planes_get_unit_normals) {
   Description d = one_body(CubedSphere{1.0, 2});
-  d.planes.push_back({"floor", {}, {0.0, 0.0, 4.0}, -1.0, {}});
+  d.planes.push_back({"floor", {}, {0.0, 0.0, 4.0}, -1.0, {}, {}, {}, ""});
   EXPECT_EQ(build(d).walls[0].direction, (Vec3d{0.0, 0.0, 1.0}));
 }
 

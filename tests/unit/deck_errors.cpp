@@ -55,7 +55,7 @@ TEST_P(WrongDeck, gives_one_error_with_place_value_accepted_and_cure) {
 }
 
 const Wrong wrong_decks[] = {
-    {"unknown_section", "[contact]", "[contcat]", "109:2: error: unknown section or key \"contcat\"",
+    {"unknown_section", "[contact]", "[contcat]", "126:2: error: unknown section or key \"contcat\"",
      "cure: did you mean \"contact\"?"},
     {"unknown_key", "safety =", "sfaety =", "11:1: error: unknown key \"sfaety\" in run",
      "cure: did you mean \"safety\"?"},
@@ -70,7 +70,7 @@ const Wrong wrong_decks[] = {
      "36:55: error: body.mesh.cells is the number 3.0; accepted: a whole number (1 to 10000)",
      "cure: write it without a decimal point"},
     {"number_for_truth", "self = false", "self = 0",
-     "111:8: error: contact.self is the whole number 0; accepted: true or false", "cure: write true or false"},
+     "128:8: error: contact.self is the whole number 0; accepted: true or false", "cure: write true or false"},
     {"number_for_text", "name = \"steel\"", "name = 5",
      "23:8: error: material.name is the whole number 5; accepted: a text", "cure: write it in quotes"},
     {"date_for_number", "duration = 2", "duration = 2020-01-01",
@@ -133,7 +133,7 @@ const Wrong wrong_decks[] = {
     {"double_brackets", "[run]", "[[run]]", "9:1: error: run is a list of 1 value; accepted: a table",
      "cure: give it once, with single brackets, [run]"},
     {"section_twice", "[contact]", "[run]",
-     "109:1: error: this is no TOML: Error while parsing table header: cannot redefine existing table 'run'; accepted: "
+     "126:1: error: this is no TOML: Error while parsing table header: cannot redefine existing table 'run'; accepted: "
      "TOML 1.0 (toml.io)",
      "cure: give each key and each [table] once; things of which there can be several are [[tables]]"},
     {"key_twice", "safety = 0.8", "duration = 3",
@@ -193,7 +193,7 @@ TEST(deck_errors, all_independent_errors_come_at_once_in_the_order_of_the_deck) 
       "d:11:1: error: unknown key \"sfaety\"", "d:27:11: error: material.poisson is 0.6",
       "d:36:55: error: body.mesh.cells is",    "d:39:53: error: body.rotate[2] lacks \"angle_degrees\"",
       "d:39:73: error: unknown key \"angle\"", "d:74:9: error: fixed.dofs[1]",
-      "d:74:14: error: fixed.dofs[2]",         "d:117:1: error: unknown key \"nods\""};
+      "d:74:14: error: fixed.dofs[2]",         "d:134:1: error: unknown key \"nods\""};
   ASSERT_EQ(errors.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(errors[i].find(expected[i]), 0U) << errors[i];

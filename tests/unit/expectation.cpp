@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace fexp::io {
 namespace {
@@ -69,6 +72,110 @@ TEST(expectation, interpolates_in_time_and_stays_within) {
     ASSERT_EQ(errors.size(), 1U);
     EXPECT_NE(errors.errors()[0].text().find("0 to 3"), std::string::npos);
   }
+}
+
+TEST(expectation, takes_rows_between_two_times) {
+  Expectation e = of_tip("mean", "farthest");
+  e.until = 0.5;
+  EXPECT_EQ(number(e), 2.0);
+  e.until = 1.0;
+  EXPECT_EQ(number(e), -6.0);
+}
+
+TEST(expectation, subtracts_other_rows_of_the_same_times) {
+  Expectation e = of_tip("mean", "last");
+  e.minus = Subtrahend{"", "root", "", std::nullopt};
+  EXPECT_EQ(number(e), 4.0 - 70.0);
+  e.minus = Subtrahend{"", "", "", 7};
+  EXPECT_EQ(number(e), 4.0 - 2.0);
+  e.minus = Subtrahend{"node", "", "", std::nullopt};
+  EXPECT_EQ(number(e), 4.0 - 8.0);
+  e.minus = Subtrahend{"", "top", "", std::nullopt};
+  ErrorList errors;
+  EXPECT_TRUE(std::isnan(expected_number(e, nodes, errors)));
+  EXPECT_EQ(errors.size(), 1U);
+}
+
+TEST(expectation, divides_by_the_first_value_where_there_is_one) {
+  Expectation e = of_tip("mean", "last");
+  e.relative_to_first = true;
+  EXPECT_EQ(number(e), 2.0);
+  const CsvTable still{{"time", "kinetic"}, {{"0", "0"}, {"1", "3"}}};
+  e.column = "kinetic";
+  e.set = "";
+  ErrorList errors;
+  EXPECT_TRUE(std::isnan(expected_number(e, still, errors)));
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_NE(errors.errors()[0].text().find("first value is 0"), std::string::npos);
+}
+
+/// Passes 1 upwards at 0.5 and 4.5, downwards at 2.5.
+const CsvTable wave{{"time", "x"},
+                    {{"0", "0"}, {"1", "2"}, {"2", "2"}, {"3", "0"}, {"4", "0"}, {"5", "2"}, {"6", "-9"}}};
+
+TEST(expectation, finds_crossings_periods_and_the_time_of_the_farthest) {
+  Expectation e;
+  e.name = e.column = "x";
+  e.level = 1.0;
+  ErrorList errors;
+  e.over_time = "crossing";
+  EXPECT_EQ(expected_number(e, wave, errors), 0.5);
+  e.from = 1.0;
+  EXPECT_EQ(expected_number(e, wave, errors), 2.5);
+  e.from = 0.0;
+  e.over_time = "period";
+  EXPECT_EQ(expected_number(e, wave, errors), 4.0);
+  e.over_time = "time_of_farthest";
+  EXPECT_EQ(expected_number(e, wave, errors), 6.0);
+  EXPECT_TRUE(errors.empty());
+  e.over_time = "period";
+  e.until = 4.0;  // One upward crossing is no period.
+  EXPECT_TRUE(std::isnan(expected_number(e, wave, errors)));
+  e.over_time = "crossing";
+  e.level = 5.0;
+  EXPECT_TRUE(std::isnan(expected_number(e, wave, errors)));
+  EXPECT_EQ(errors.size(), 2U);
+}
+
+std::size_t errors_with(const std::vector<double>& meshes, const Expectation& e) {
+  VerifySettings settings;
+  settings.meshes = meshes;
+  ErrorList errors;
+  check_expectations(settings, std::span(&e, 1), errors);
+  return errors.size();
+}
+
+TEST(expectation, meshes_ascend_and_hold_the_decks_own) {
+  const Expectation e;
+  for (const std::vector<double>& good : {std::vector<double>{}, {1.0, 2.0}, {0.5, 1.0}, {0.25, 0.5, 1.0}}) {
+    EXPECT_EQ(errors_with(good, e), 0U);
+  }
+  for (const std::vector<double>& bad : {std::vector<double>{1.0}, {2.0, 1.0}, {1.0, 1.0, 2.0}, {0.5, 2.0}}) {
+    EXPECT_EQ(errors_with(bad, e), 1U);
+  }
+}
+
+TEST(expectation, is_for_meshes_that_are_run_and_an_order_needs_a_series) {
+  Expectation e;
+  e.mesh = 1.0;
+  EXPECT_EQ(errors_with({}, e), 0U);
+  EXPECT_TRUE(is_held(e, 1.0));
+  EXPECT_FALSE(in_series(e));
+  e.mesh = 2.0;
+  EXPECT_EQ(errors_with({1.0, 2.0}, e), 0U);
+  EXPECT_EQ(errors_with({1.0, 4.0}, e), 1U);
+  EXPECT_FALSE(is_held(e, 1.0));
+  e.least_order = 1.0;
+  EXPECT_EQ(errors_with({1.0, 2.0}, e), 1U);
+  e.mesh = -1.0;
+  EXPECT_TRUE(is_held(e, 2.0));
+  EXPECT_FALSE(is_held(e, 0.5));
+  EXPECT_EQ(errors_with({}, e), 1U);
+  EXPECT_EQ(errors_with({1.0, 2.0}, e), 1U);
+  EXPECT_EQ(errors_with({1.0, 2.0, 4.0}, e), 0U);
+  EXPECT_EQ(errors_with({1.0, 2.0, 3.0}, e), 1U);  // Two ratios
+  e.exact = true;
+  EXPECT_EQ(errors_with({1.0, 2.0}, e), 0U);
 }
 
 TEST(expectation, chooses_rows_by_set_body_and_node) {

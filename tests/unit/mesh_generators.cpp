@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -86,6 +87,9 @@ std::vector<Expected> cases() {
   list.push_back({Plate{1.0, 2.0, 3, 4, "one"}, 24, 20, 1, false});
   list.push_back({Plate{1.0, 2.0, 3, 4, "alternating"}, 24, 20, 1, false});
   list.push_back({Plate{1.0, 2.0, 3, 4, "crossed"}, 48, 32, 1, false});
+  list.push_back({Plate{1.0, 2.0, 3, 4, "one", 90.0}, 24, 20, 1, false});
+  list.push_back({SphericalCap{1.0, 30.0, 5}, 50, 36, 1, false});
+  list.push_back({SphericalCap{1.0, 120.0, 8}, 128, 81, 1, false});
   list.push_back({Cylinder{1.0, 3.0, 12, 5, 360.0}, 120, 72, 0, false});
   list.push_back({Cylinder{1.0, 3.0, 3, 1, 360.0}, 6, 6, 0, false});
   list.push_back({Cylinder{1.0, 3.0, 12, 5, 90.0}, 120, 78, 1, false});
@@ -167,6 +171,7 @@ TEST(mesh_generators, normals_point_outwards_or_up) {
   const auto from_axis = [](const Vec3d& p) { return Vec3d{p.x, p.y, 0.0}; };
   expect_along(CubedSphere{2.0, 5}, from_centre);
   expect_along(UvSphere{2.0, 9, 6}, from_centre);
+  expect_along(SphericalCap{2.0, 50.0, 6}, from_centre);
   expect_along(Plate{1.0, 1.0, 3, 2, "crossed"}, [](const Vec3d&) { return Vec3d{0.0, 0.0, 1.0}; });
   expect_along(Cylinder{1.0, 2.0, 7, 3, 360.0}, from_axis);
   expect_along(Cylinder{1.0, 2.0, 7, 3, 200.0}, from_axis);
@@ -174,6 +179,30 @@ TEST(mesh_generators, normals_point_outwards_or_up) {
   expect_along(OpenBox{1.0, 2.0, 3.0, 2, 3, 4}, [](const Vec3d& p) {
     return p.z == 0.0 ? Vec3d{0.0, 0.0, -1.0} : Vec3d{p.x, p.y, 0.0};
   });
+}
+
+TEST(mesh_generators, a_twisted_plate_turns_evenly_about_its_middle_line) {
+  const Mesh flat = generate_mesh(Plate{4.0, 2.0, 4, 2, "one"});
+  const Mesh mesh = generate_mesh(Plate{4.0, 2.0, 4, 2, "one", 90.0});
+  for (std::size_t n = 0; n < mesh.position.size(); ++n) {
+    const Vec3d &p = mesh.position[n], &q = flat.position[n];
+    EXPECT_EQ(p.x, q.x);
+    const double angle = pi / 2.0 * q.x / 4.0;
+    EXPECT_NEAR(p.y, 1.0 + (q.y - 1.0) * std::cos(angle), 1e-15);
+    EXPECT_NEAR(p.z, (q.y - 1.0) * std::sin(angle), 1e-15);
+  }
+}
+
+TEST(mesh_generators, a_cap_lies_on_its_sphere_with_its_rim_at_the_angle_and_a_node_at_the_pole) {
+  const Mesh mesh = generate_mesh(SphericalCap{3.0, 40.0, 6});
+  for (const Vec3d& p : mesh.position) {
+    EXPECT_NEAR(norm(p), 3.0, 1e-14);
+  }
+  for (const Index n : boundary_nodes(mesh.triangle, edge_neighbours(mesh.triangle))) {
+    EXPECT_NEAR(mesh.position[at(n)].z, 3.0 * std::cos(40.0 * pi / 180.0), 1e-14);
+  }
+  EXPECT_EQ(std::count(mesh.position.begin(), mesh.position.end(), Vec3d{0.0, 0.0, 3.0}), 1);
+  EXPECT_LT(longest_over_shortest_edge(mesh), 3.0);
 }
 
 TEST(mesh_generators, flat_shapes_have_their_exact_areas) {
@@ -193,6 +222,7 @@ TEST(mesh_generators, curved_shapes_converge_to_their_areas_with_second_order) {
   expect_order_two([](int n) { return UvSphere{2.0, 2 * n, n}; }, 16.0 * pi);
   expect_order_two([](int n) { return Cylinder{1.0, 2.0, 2 * n, n, 360.0}; }, 4.0 * pi);
   expect_order_two([](int n) { return Cylinder{1.0, 2.0, n, n, 90.0}; }, pi);
+  expect_order_two([](int n) { return SphericalCap{2.0, 60.0, n}; }, 4.0 * pi);
 }
 
 TEST(mesh_generators, spheres_enclose_nearly_the_volume_of_a_sphere) {

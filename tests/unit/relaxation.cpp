@@ -80,5 +80,31 @@ TEST(relaxation, of_a_model_ends_at_its_static_answer_or_not_at_all) {
   }
 }
 
+// The reaction where a displacement is prescribed stays, however long the run waits.
+TEST(relaxation, of_a_model_with_prescribed_displacements_ends_in_balance) {
+  model::Description d = test::description({1000.0, 1.0e6, 0.0}, 0.1);
+  d.run.analysis = "static";
+  test::add_body(d, "strip", model::Plate{10.0, 1.0, 20, 1, "one"});
+  test::add_box_set(d, "left", {-0.01, -1.0, -1.0}, {0.01, 2.0, 1.0});
+  test::add_box_set(d, "middle", {4.99, -1.0, -1.0}, {5.01, 2.0, 1.0});
+  test::add_box_set(d, "right", {9.99, -1.0, -1.0}, {10.01, 2.0, 1.0});
+  test::fix(d, "left", {"x"});
+  d.curves.push_back({"slowly", {{0.0, 0.0}, {5.0, 1.0}}, {}});
+  model::Prescribed pulled;
+  pulled.set = "right";
+  pulled.dof = "x";
+  pulled.displacement = 1.0e-3;
+  pulled.curve = "slowly";
+  d.prescribed.push_back(pulled);
+  const model::Model model = test::build(d);
+  Simulation simulation(model, solve::KernelChoice::automatic);
+  while (!simulation.relaxation().settled() && simulation.state().time < 60.0) {
+    ASSERT_EQ(simulation.run_epoch(60.0).fault.kind, FaultKind::none);
+  }
+  EXPECT_TRUE(simulation.relaxation().settled());
+  const Index middle = test::nodes_of(model, "middle").front();
+  EXPECT_NEAR(simulation.state().motion[at(middle)].position.x - 5.0, 0.5e-3, 1e-3 * 0.5e-3);
+}
+
 }  // namespace
 }  // namespace fexp::cluster

@@ -31,7 +31,7 @@ using test::TemporaryDirectory;
 const std::string deck_text = R"(
 [run]
 duration = 0.06
-epoch_steps = 3
+epoch_steps = 2
 [[material]]
 name = "rubber"
 density = 1000.0

@@ -100,7 +100,7 @@ TEST(walls, of_the_deck_come_in_order_and_with_unit_vectors) {
   d.curves.push_back({"c", {{0.0, 0.0}, {2.0, 1.0}}, {}});
   d.spheres.push_back({"s", {1.0, 2.0, 3.0}, 5.0, true, 7.0, {}, {}, {0.0, 0.0, 4.0}, "c"});
   d.cylinders.push_back({"c", {1.0, 0.0, 0.0}, {0.0, 3.0, 4.0}, 6.0, false, -1.0, {}, {2.0, 0.0, 0.0}, {}, ""});
-  d.planes.push_back({"p", {}, {0.0, 2.0, 0.0}, -1.0, {}});
+  d.planes.push_back({"p", {}, {0.0, 2.0, 0.0}, -1.0, {}, {}, {}, ""});
   const model::Model model = test::build(d);
   ASSERT_EQ(model.walls.size(), 3U);
   EXPECT_EQ(model.walls[0].name, "p");

@@ -7,6 +7,7 @@
 
 #include "cluster/simulation.hpp"
 #include "support/contact.hpp"
+#include "support/crossings.hpp"
 #include "support/models.hpp"
 #include "support/verification_table.hpp"
 
@@ -44,8 +45,8 @@ model::Mesh capped_bar(double length, int cells) {
   return m;
 }
 
-// Nodes meet triangles, edges do not meet edges, so the strips are the four walls of thin bars that bear caps. They are
-// slow, as the exact answer is that of small strains.
+// So that faces meet, the strips are the four walls of thin bars that bear caps. They are slow, as the exact answer is
+// that of small strains.
 TEST(two_equal_bars, swap_velocities_in_the_time_a_wave_takes_there_and_back) {
   const double length = 40.0, speed = 0.002, thickness = 0.02;
   const int cells = 160;
@@ -112,6 +113,82 @@ TEST(four_spheres, of_the_paper_meet_rebound_and_part) {
   // The faster sphere of each pair has been thrown back.
   EXPECT_LT(momentum(model, simulation.state(), 0).x / model.bodies[0].mass, 0.0);
   EXPECT_GT(momentum(model, simulation.state(), 3).x / model.bodies[3].mass, 0.0);
+}
+
+/// Steps to the end; the most crossings of mid-surfaces at the end of any epoch.
+int most_crossings(const model::Model& model, double end, cluster::Simulation& simulation) {
+  int most = 0;
+  while (simulation.state().time < end) {
+    const auto report = simulation.run_epoch(end);
+    EXPECT_EQ(report.fault.kind, cluster::FaultKind::none) << report.fault.message;
+    if (report.fault.kind != cluster::FaultKind::none) {
+      break;
+    }
+    most = std::max(most, test::crossings(model, simulation.state()));
+  }
+  return most;
+}
+
+/// Two steel plates at right angles that fly at each other, so that their edges meet crosswise between nodes.
+model::Description crossed_plates() {
+  auto d = test::description({7850.0, 2.1e11, 0.3}, 0.01);
+  d.contact.enabled = true;
+  d.run.epoch_steps = 8;
+  model::BodyDescription& a = test::add_body(d, "A", test::plate(1.0, 1.0, 5, 5));
+  a.velocity = {10.0, 0.0, 0.0};
+  model::BodyDescription& b = test::add_body(d, "B", test::plate(1.0, 1.0, 5, 5));
+  b.rotate.push_back({{1.0, 0.0, 0.0}, 90.0, {}});
+  b.translate = {1.02, 0.5, -0.5};
+  return d;
+}
+
+TEST(crossed_plates, that_meet_edge_to_edge_do_not_cross_and_part) {
+  const model::Model model = test::build(crossed_plates());
+  cluster::Simulation simulation(model, solve::KernelChoice::automatic);
+  const int crossings = most_crossings(model, 0.006, simulation);
+  const auto& x = simulation.extremes();
+  verify(
+      {"33", "crossed plates, edge to edge", "crossings of mid-surfaces", 0.0, double(crossings), 0.0, false, "exact"});
+  verify({"33", "crossed plates, edge to edge", "energy error", 0.0, x.energy_error, 0.01, false, "balance"});
+  verify({"33", "crossed plates, edge to edge", "linear momentum error", 0.0, x.linear_momentum_error, 1e-12, false,
+          "exact"});
+  verify({"33", "crossed plates, edge to edge", "angular momentum error", 0.0, x.angular_momentum_error, 1e-12, false,
+          "exact"});
+  EXPECT_GT(momentum(model, simulation.state(), 1).x, momentum(model, simulation.state(), 0).x);
+  EXPECT_EQ(simulation.present().active_pairs, 0);
+}
+
+TEST(crossed_plates, cross_where_edges_are_left_out) {
+  auto d = crossed_plates();
+  d.contact.edges = false;
+  const model::Model model = test::build(d);
+  cluster::Simulation simulation(model, solve::KernelChoice::automatic);
+  EXPECT_GT(most_crossings(model, 0.006, simulation), 0);
+}
+
+// The spheres are turned so that an edge of one meets an edge of the other, and have no velocities across.
+TEST(four_spheres, meet_edge_to_edge_without_velocities_across) {
+  auto d = test::description({7850.0, 2.1e11, 0.3}, 0.01);
+  d.contact.enabled = true;
+  d.run.epoch_steps = 8;
+  for (int i = 0; i < 4; ++i) {
+    model::BodyDescription& body = test::add_body(d, "sphere " + std::to_string(i), model::CubedSphere{0.5, 4});
+    // By half a cell about y the one, about z the other: the middles of crossing edges meet.
+    body.rotate.push_back({i % 2 == 0 ? Vec3d{0.0, 1.0, 0.0} : Vec3d{0.0, 0.0, 1.0}, 11.25, {}});
+    body.translate = {std::array{0.0, 1.1, 3.3, 4.4}[at(i)], 0.0, 0.0};
+    body.velocity = {10.0 * std::array{1.0, -0.2, 0.2, -1.0}[at(i)], 0.0, 0.0};
+  }
+  const model::Model model = test::build(d);
+  cluster::Simulation simulation(model, solve::KernelChoice::automatic);
+  const int crossings = most_crossings(model, 0.06, simulation);
+  const auto& x = simulation.extremes();
+  verify(
+      {"31", "four spheres, edge to edge", "crossings of mid-surfaces", 0.0, double(crossings), 0.0, false, "exact"});
+  verify({"31", "four spheres, edge to edge", "energy error", 0.0, x.energy_error, 0.01, false, "balance"});
+  verify({"31", "four spheres, edge to edge", "linear momentum error", 0.0, x.linear_momentum_error, 1e-12, false,
+          "exact"});
+  EXPECT_LT(momentum(model, simulation.state(), 0).x, 0.0);
+  EXPECT_GT(momentum(model, simulation.state(), 3).x, 0.0);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST(moving_plane, pushes_a_plate_with_its_mass_times_the_acceleration) {
     auto d = plate(rigid);
     d.curves.push_back({"ramp", {{0.0, 0.0}, {9.0, 9.0}}, {}});
     const double acceleration = 50.0;
-    d.planes.push_back({"pusher", {0.0, 0.0, -0.5 * thickness}, {0.0, 0.0, 1.0}, -1.0, {}});
+    d.planes.push_back({"pusher", {0.0, 0.0, -0.5 * thickness}, {0.0, 0.0, 1.0}, -1.0, {}, {}, {}, ""});
     d.planes[0].velocity = {0.0, 0.0, acceleration};
     d.planes[0].curve = "ramp";
     const model::Model model = test::build(d);

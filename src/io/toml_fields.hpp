@@ -140,13 +140,13 @@ class FieldReader {
     }
     out.clear();
     out.reserve(items->size());
+    const std::size_t errors = errors_.size();
     for (std::size_t i = 0; i < items->size(); ++i) {
-      const std::size_t errors = errors_.size();
       read((*items)[i], item_path(path, i), limits, out.emplace_back());
-      // A value that stands for a wrong one could be taken for another mistake.
-      if (!HasFields<T> && errors_.size() != errors) {
-        out.pop_back();
-      }
+    }
+    // Values that stand for wrong ones could be taken for other mistakes.
+    if (!HasFields<T> && errors_.size() != errors) {
+      out.clear();
     }
   }
   template <class T, std::size_t Capacity>

@@ -124,7 +124,7 @@ solve::Diagnostics Simulation::sum_of_diagnostics() const {
   return sum;
 }
 
-/// Step and number of steps towards the target, and how far the bodies may move meanwhile.
+/// Step and number of steps towards the target, which may be infinite, and how far the bodies may move meanwhile.
 void Simulation::plan(double target, Attempt& attempt) const {
   const double frequency2 = attempt.element_frequency2 + attempt.contact_frequency2;
   const double largest = model_.run.safety * 2.0 / std::sqrt(frequency2);
@@ -133,7 +133,7 @@ void Simulation::plan(double target, Attempt& attempt) const {
   const bool reaches_target = needed <= static_cast<double>(attempt.most_steps);
   attempt.steps = reaches_target ? std::max(static_cast<Index>(needed), Index{1}) : attempt.most_steps;
   // The same step all the way: where steps change again and again, modes near the critical step grow.
-  attempt.dt = left / std::max(needed, 1.0);
+  attempt.dt = std::isfinite(needed) ? left / std::max(needed, 1.0) : largest;
   attempt.end_time = reaches_target ? target : state_.time + static_cast<double>(attempt.steps) * attempt.dt;
   attempt.allowance.resize(model_.bodies.size());
   for (Index b = 0; b < model_.body_count(); ++b) {

@@ -113,7 +113,7 @@ def count_case(valgrind, program, case):
         if result.returncode == NO_SUCH_KERNEL:
             raise Skip(result.stderr.strip().splitlines()[-1])
         if result.returncode != 0:
-            raise Failure(f"{' '.join(command)}\nended with {result.returncode}\n{result.stdout}{result.stderr}")
+            raise Failure(f"{' '.join(map(str, command))}\nended with {result.returncode}\n{result.stdout}{result.stderr}")
         counts = inclusive_counts(profile.read_text())
     numbers = {name: int(number) for name, number in (line.split() for line in result.stdout.splitlines())}
     if (numbers["active_pairs"] > 0) != ("contact forces" in case.parts):

@@ -105,6 +105,8 @@ inline model::Description sphere_on_plate() {
 /// A tube thrown against a plane so hard that its inner side meets itself.
 inline model::Description tube_that_folds() {
   model::Description d = with_contact(0.03);
+  d.contact.friction = 0.2;
+  d.contact.damping = 0.1;
   model::Cylinder mesh;
   mesh.radius = 0.3;
   mesh.length = 1.0;
@@ -137,6 +139,7 @@ inline model::Description swarm() {
 /// kinds of hardening: parts of the plate harden by a table and linearly, and the law of the ball depends on the rate.
 inline model::Description metals() {
   model::Description d = with_contact(0.01);
+  d.contact.friction = 0.3;
   d.run.energy_drift_limit = 1.0;
   const physics::J2Law lead{1.0e3, 1.0e6, 0.4};
   physics::JohnsonCook fast;
@@ -207,6 +210,8 @@ inline model::Description rigid_and_soft() {
 /// walls of all shapes that move, and a stamp that is lowered by a curve and turned, and may slide in one direction.
 inline model::Description rigid_machine() {
   model::Description d = with_contact(0.02);
+  d.contact.friction = 0.1;
+  d.contact.damping = 0.2;
   d.contact.penalty_scale = 4.0;
   d.run.safety = 0.25;
   model::BodyDescription& ball = add_body(d, "ball", sphere(0.3, 8));

@@ -134,7 +134,7 @@ TEST(exact_distances, of_a_million_pairs_of_edges_and_where_they_cross) {
     const ClosestOnLines c = closest_on_lines(p0, p1, q0, q1);
     ASSERT_EQ(c.sine2 > 0.0, normal2 > 0) << "pair " << i;
     if (normal2 > 0) {
-      const double below = static_cast<double>(normal2);
+      const auto below = static_cast<double>(normal2);
       const double part = static_cast<double>(first) / below, other = static_cast<double>(second) / below;
       ASSERT_NEAR(c.first, part, 1e-14 * (1.0 + std::abs(part))) << "pair " << i;
       ASSERT_NEAR(c.second, other, 1e-14 * (1.0 + std::abs(other))) << "pair " << i;

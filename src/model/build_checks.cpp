@@ -250,7 +250,7 @@ std::string name_list(std::span<const std::string> names) {
   if (names.size() > most) {
     text += fmt::format(" and {} more", names.size() - most);
   }
-  return names.empty() ? "(there are none)" : text;
+  return text.empty() ? "(there are none)" : text;
 }
 
 void check_description(const Description& description, ErrorList& errors) {

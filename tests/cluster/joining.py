@@ -45,7 +45,7 @@ class Running(cluster.Case):
         self.assertEqual(self.names(), before)
 
     def test_rank_0_only_writes_when_the_coordinators_machine_is_not_listed(self):
-        self.write_hosts("far1", "far2")
+        self.far_hosts("far1", "far2")
         process = self.start_run("--agent", cluster.HERE / "agent.sh")
         self.wait_for_world(1, process)
         self.assertEqual(self.machines_of_world(1), ["_writer", "far1", "far2"])

@@ -228,7 +228,7 @@ class More(real.Case):
         self.finish(process)
 
     def test_the_launch_daemon_of_a_machine_is_killed(self):
-        self.write_hosts("c1=localhost", "far1")
+        self.far_hosts("c1=localhost", "far1")
         process = self.start_run("--agent", cluster.HERE / "agent.sh", "--threads", "1", "--json", *self.run_words)
         self.wait_for_step(200, process)
         os.kill(cluster.parent_of(self.worker("far1")), signal.SIGKILL)

@@ -12,7 +12,7 @@ import cluster
 
 class Machines(cluster.Case):
     def start_far(self, *names):
-        self.write_hosts("c1=localhost", *names)
+        self.far_hosts("c1=localhost", *names)
         return self.start_run("--agent", cluster.HERE / "agent.sh")
 
     def test_a_machine_that_is_down_is_left_out_and_joins_when_it_is_back(self):

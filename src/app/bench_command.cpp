@@ -184,7 +184,7 @@ ExitCode bench(const BenchOptions& options) {
   return ExitCode::done;
 }
 
-std::function<ExitCode()> declare(CLI::App& app) {
+std::function<ExitCode()> declare_bench(CLI::App& app) {
   auto options = std::make_shared<BenchOptions>();
   app.add_option("--threads", options->threads,
                  "Numbers of threads to measure with; 1 and all of the machine when left out. Small cases take the "
@@ -210,6 +210,6 @@ const Command bench_command{"bench", "Measure how fast this machine runs the sol
                             "  fexp bench                              minutes, on a machine without other work\n"
                             "  fexp bench --filter plate --threads 1,8\n"
                             "  fexp bench --json --csv rows.csv > machine.json",
-                            declare};
+                            declare_bench};
 
 }  // namespace fexp::app

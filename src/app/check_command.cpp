@@ -203,7 +203,7 @@ ExitCode check(const CheckOptions& options) {
   return code;
 }
 
-std::function<ExitCode()> declare(CLI::App& app) {
+std::function<ExitCode()> declare_check(CLI::App& app) {
   auto options = std::make_shared<CheckOptions>();
   add_deck_option(app, options->deck);
   add_threads_option(app, options->threads);
@@ -216,6 +216,6 @@ std::function<ExitCode()> declare(CLI::App& app) {
 
 const Command check_command{"check",
                             "Validate a deck; tell masses, smallest step, what is odd, and how long a run will take",
-                            "  fexp check four_spheres.toml", declare};
+                            "  fexp check four_spheres.toml", declare_check};
 
 }  // namespace fexp::app

@@ -23,13 +23,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using coordinator::LineConnection;
-using nlohmann::json;
+using Json = nlohmann::json;
 using Action = std::function<ExitCode()>;
 
 constexpr double answer_seconds = 10.0;
 
 /// None when it does not answer in time.
-std::optional<json> ask(LineConnection& connection, const json& question) {
+std::optional<Json> ask(LineConnection& connection, const Json& question) {
   connection.send(question);
   return coordinator::wait_for_message(connection, answer_seconds);
 }
@@ -73,7 +73,7 @@ LineConnection coordinator_of(const std::string& run) {
   if (living.size() > 1) {
     std::string runs;
     for (LineConnection& connection : living) {
-      runs += " " + ask(connection, {{"command", "status"}}).value_or(json::object()).value("run", "");
+      runs += " " + ask(connection, {{"command", "status"}}).value_or(Json::object()).value("run", "");
     }
     refuse("", fmt::format("{} cluster runs of yours live on this machine:{}", living.size(), runs),
            "name one with --run");
@@ -81,7 +81,7 @@ LineConnection coordinator_of(const std::string& run) {
   return std::move(living.front());
 }
 
-json ask_or_refuse(const std::string& run, const json& question) {
+Json ask_or_refuse(const std::string& run, const Json& question) {
   LineConnection connection = coordinator_of(run);
   const auto answer = ask(connection, question);
   if (!answer) {
@@ -91,8 +91,8 @@ json ask_or_refuse(const std::string& run, const json& question) {
 }
 
 /// Add, remove, stop.
-ExitCode command(const std::string& run, const json& question) {
-  const json answer = ask_or_refuse(run, question);
+ExitCode command(const std::string& run, const Json& question) {
+  const Json answer = ask_or_refuse(run, question);
   const std::string text = answer.value("text", "");
   if (!answer.value("ok", false)) {
     print_error(fmt::format("fexp: {}\n", text));
@@ -102,14 +102,14 @@ ExitCode command(const std::string& run, const json& question) {
   return ExitCode::done;
 }
 
-std::string status_text(const json& status) {
+std::string status_text(const Json& status) {
   std::string text = fmt::format("{}: {}, world {}, step {}\n", status.value("run", ""), status.value("phase", ""),
                                  status.value("world", 0), status.value("step", std::int64_t{0}));
-  const json machines = status.value("machines", json::array());
-  const json worker = status.value("worker", json::object());
-  for (const json& machine : machines) {
+  const Json machines = status.value("machines", Json::array());
+  const Json worker = status.value("worker", Json::object());
+  for (const Json& machine : machines) {
     text += fmt::format("  {:<16} {}", machine.value("name", ""), machine.value("state", ""));
-    if (machine.value("retry_in", json()).is_number()) {
+    if (machine.value("retry_in", Json()).is_number()) {
       text += fmt::format(", tried again in {:.0f} s", machine.value("retry_in", 0.0));
     }
     const std::string reason = machine.value("reason", "");
@@ -124,7 +124,7 @@ std::string status_text(const json& status) {
 }
 
 ExitCode status(const std::string& run, bool as_json) {
-  const json answer = ask_or_refuse(run, {{"command", "status"}});
+  const Json answer = ask_or_refuse(run, {{"command", "status"}});
   if (as_json) {
     print_json(nlohmann::ordered_json(answer));
   } else {
@@ -206,7 +206,7 @@ Action declare_stop(CLI::App& app) {
   return [options] { return command(options->run, {{"command", "stop"}}); };
 }
 
-Action declare(CLI::App& app) {
+Action declare_cluster(CLI::App& app) {
   app.require_subcommand(1);
   auto actions = std::make_shared<std::vector<std::pair<CLI::App*, Action>>>();
   const auto add = [&](const char* name, const char* purpose, const std::function<Action(CLI::App&)>& declare_it) {
@@ -240,6 +240,6 @@ const Command cluster_command{"cluster", "Run on several machines through MPI, w
                               "  fexp cluster add node7:16               while it runs\n"
                               "  fexp cluster status\n"
                               "  fexp cluster resume plate.run           after the coordinator's machine was restarted",
-                              declare};
+                              declare_cluster};
 
 }  // namespace fexp::app

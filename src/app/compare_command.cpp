@@ -29,7 +29,7 @@ ExitCode compare(const CompareOptions& options) {
   }
 }
 
-std::function<ExitCode()> declare(CLI::App& app) {
+std::function<ExitCode()> declare_compare(CLI::App& app) {
   auto options = std::make_shared<CompareOptions>();
   app.add_option("A", options->a, "Directory of a run, or a results file")->required();
   app.add_option("B", options->b, "Another")->required();
@@ -39,6 +39,6 @@ std::function<ExitCode()> declare(CLI::App& app) {
 }  // namespace
 
 const Command compare_command{"compare", "Name the first step, body and node in which two runs differ, bit by bit",
-                              "  fexp compare four_spheres.run four_spheres-2.run", declare};
+                              "  fexp compare four_spheres.run four_spheres-2.run", declare_compare};
 
 }  // namespace fexp::app

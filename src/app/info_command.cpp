@@ -35,7 +35,7 @@ ExitCode info(const InfoOptions& options) {
   return ExitCode::done;
 }
 
-std::function<ExitCode()> declare(CLI::App& app) {
+std::function<ExitCode()> declare_info(CLI::App& app) {
   auto options = std::make_shared<InfoOptions>();
   app.add_option("RESULT", options->result, "Directory of a run, or a results file (.vtkhdf)")->required();
   add_json_option(app, options->json, "Print JSON");
@@ -44,6 +44,7 @@ std::function<ExitCode()> declare(CLI::App& app) {
 
 }  // namespace
 
-const Command info_command{"info", "Tell what a run or a results file holds", "  fexp info four_spheres.run", declare};
+const Command info_command{"info", "Tell what a run or a results file holds", "  fexp info four_spheres.run",
+                           declare_info};
 
 }  // namespace fexp::app

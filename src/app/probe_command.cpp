@@ -31,7 +31,7 @@ ExitCode probe(const coordinator::ProbeRequest& request) {
   return ExitCode::done;
 }
 
-std::function<ExitCode()> declare(CLI::App& app) {
+std::function<ExitCode()> declare_probe(CLI::App& app) {
   auto request = std::make_shared<coordinator::ProbeRequest>();
   app.add_option("--run-id", request->run_id, "Id of the run")->required();
   app.add_option("--machine", request->machine, "Name that the run has for this machine")->required();
@@ -43,6 +43,6 @@ std::function<ExitCode()> declare(CLI::App& app) {
 }  // namespace
 
 const Command probe_command{"probe", "Tell how this machine and a run on it are; the coordinator of a cluster asks",
-                            "  fexp probe --run-id 0123456789abcdef --machine c1", declare, true};
+                            "  fexp probe --run-id 0123456789abcdef --machine c1", declare_probe, true};
 
 }  // namespace fexp::app

@@ -7,7 +7,7 @@ namespace fexp::app {
 
 namespace {
 
-std::function<ExitCode()> declare(CLI::App&) {
+std::function<ExitCode()> declare_reference(CLI::App&) {
   return [] {
     print_out(io::deck_reference());
     return ExitCode::done;
@@ -17,6 +17,6 @@ std::function<ExitCode()> declare(CLI::App&) {
 }  // namespace
 
 const Command reference_command{"reference", "Print the reference of the deck (Markdown)", "  fexp reference | less",
-                                declare};
+                                declare_reference};
 
 }  // namespace fexp::app

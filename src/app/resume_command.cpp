@@ -104,7 +104,7 @@ ExitCode resume_here(const ResumeOptions& options, Ranks& ranks) {
   return drive(run, end);
 }
 
-std::function<ExitCode()> declare(CLI::App& app) {
+std::function<ExitCode()> declare_resume(CLI::App& app) {
   auto options = std::make_shared<ResumeOptions>();
   app.add_option("RUN", options->run, "Directory of a run that was interrupted or killed")->required();
   add_threads_option(app, options->threads);
@@ -120,6 +120,6 @@ const Command resume_command{"resume", "Go on with a run from its last checkpoin
                              "  fexp resume four_spheres.run            from the last checkpoint there\n"
                              "  fexp resume plate.run --threads 16      with other threads; the results are the same\n"
                              "  mpirun -n 4 fexp resume swarm.run       on other machines",
-                             declare};
+                             declare_resume};
 
 }  // namespace fexp::app

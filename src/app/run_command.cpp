@@ -51,7 +51,7 @@ ExitCode run(const RunOptions& options) {
   return with_ranks(options.threads, [&](Ranks& ranks) { return run_here(options, ranks); });
 }
 
-std::function<ExitCode()> declare(CLI::App& app) {
+std::function<ExitCode()> declare_run(CLI::App& app) {
   using solve::KernelChoice;
   auto options = std::make_shared<RunOptions>();
   add_deck_option(app, options->deck);
@@ -84,6 +84,6 @@ const Command run_command{"run", "Integrate a deck and write its results",
                           "  fexp run plate.toml --out /data/plate --force --threads 8\n"
                           "  fexp run plate.toml --json > plate.json\n"
                           "  mpirun -n 4 fexp run swarm.toml         four ranks, each with its share of the cores",
-                          declare};
+                          declare_run};
 
 }  // namespace fexp::app

@@ -276,7 +276,7 @@ class Verifier {
   VerifyFindings findings_;
 };
 
-std::function<ExitCode()> declare(CLI::App& app) {
+std::function<ExitCode()> declare_verify(CLI::App& app) {
   auto options = std::make_shared<VerifyOptions>();
   app.add_option(
       "CASE", options->cases,
@@ -296,6 +296,6 @@ const Command verify_command{"verify", "Run decks and hold their results against
                              "  fexp verify                             fexp's own verification suite\n"
                              "  fexp verify --all 17 22                 two of its cases, with refined meshes\n"
                              "  fexp verify my_bracket.toml --out runs  decks of your own, with [[expect]]",
-                             declare};
+                             declare_verify};
 
 }  // namespace fexp::app

@@ -19,7 +19,7 @@ nlohmann::ordered_json optional_json(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-nlohmann::ordered_json row_json(const VerifyRow& row) {
+nlohmann::ordered_json verified_row(const VerifyRow& row) {
   const io::Expectation& e = row.expected;
   nlohmann::ordered_json json{{"case", row.name},
                               {"deck", row.deck},
@@ -37,7 +37,7 @@ nlohmann::ordered_json row_json(const VerifyRow& row) {
   return json;
 }
 
-nlohmann::ordered_json series_json(const VerifySeries& series) {
+nlohmann::ordered_json verified_series(const VerifySeries& series) {
   const io::Expectation& e = series.expected();
   nlohmann::ordered_json meshes = nlohmann::ordered_json::array();
   for (const VerifyRow& row : series.rows) {
@@ -131,8 +131,8 @@ std::string sum_text(const VerifyFindings& findings) {
 
 nlohmann::ordered_json to_json(const VerifyFindings& findings) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array(), series = nlohmann::ordered_json::array();
-  std::ranges::transform(findings.rows, std::back_inserter(rows), row_json);
-  std::ranges::transform(findings.series, std::back_inserter(series), series_json);
+  std::ranges::transform(findings.rows, std::back_inserter(rows), verified_row);
+  std::ranges::transform(findings.series, std::back_inserter(series), verified_series);
   return {{"rows", std::move(rows)},
           {"series", std::move(series)},
           {"wrong", findings.wrong()},

@@ -168,7 +168,7 @@ ExitCode work_here(const WorkerOptions& options, Ranks& ranks) {
   return ExitCode::done;
 }
 
-std::function<ExitCode()> declare(CLI::App& app) {
+std::function<ExitCode()> declare_worker(CLI::App& app) {
   auto options = std::make_shared<WorkerOptions>();
   app.add_option("--run-id", options->run_id, "The run")->required();
   app.add_option("--world", options->world, "Number of the world")->required();
@@ -180,6 +180,7 @@ std::function<ExitCode()> declare(CLI::App& app) {
 
 }  // namespace
 
-const Command worker_command{"worker", "A rank of a cluster run", "  (started by \"fexp cluster run\")", declare, true};
+const Command worker_command{"worker", "A rank of a cluster run", "  (started by \"fexp cluster run\")", declare_worker,
+                             true};
 
 }  // namespace fexp::app

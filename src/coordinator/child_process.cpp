@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <sstream>
 #include <string_view>
 
 extern char** environ;  // NOLINT(readability-redundant-declaration)
@@ -168,5 +169,17 @@ void ChildProcess::send_signal(int signal) const {
 }
 
 std::vector<int> ChildProcess::descriptors() const { return {output_descriptor_, errors_descriptor_, end_descriptor_}; }
+
+std::string last_line(const std::string& text) {
+  std::istringstream stream(text);
+  std::string last;
+  for (std::string line; std::getline(stream, line);) {
+    const std::size_t end = line.find_last_not_of(" \t\r");
+    if (end != line.npos) {
+      last = line.substr(0, end + 1);
+    }
+  }
+  return last;
+}
 
 }  // namespace fexp::coordinator

@@ -50,4 +50,7 @@ class ChildProcess {
   std::string errors_;
 };
 
+/// The last line of what a process has written that is not blank, or empty.
+[[nodiscard]] std::string last_line(const std::string& text);
+
 }  // namespace fexp::coordinator

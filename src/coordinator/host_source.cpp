@@ -18,15 +18,6 @@ constexpr double file_interval = 0.5;
 constexpr double script_interval = 5.0;
 constexpr double script_limit = 30.0;
 
-std::string last_line(const std::string& text) {
-  const std::size_t end = text.find_last_not_of(" \t\n");
-  if (end == text.npos) {
-    return "";
-  }
-  const std::size_t begin = text.rfind('\n', end);
-  return text.substr(begin == text.npos ? 0 : begin + 1, end - (begin == text.npos ? 0 : begin + 1) + 1);
-}
-
 }  // namespace
 
 std::string run_host_script(const std::string& script) {

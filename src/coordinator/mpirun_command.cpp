@@ -14,7 +14,7 @@ namespace fexp::coordinator {
 namespace {
 
 /// Quoted for a shell.
-std::string quoted(std::string_view word) {
+std::string quoted_word(std::string_view word) {
   std::string text = "'";
   for (const char c : word) {
     text += c == '\'' ? "'\\''" : std::string(1, c);
@@ -156,7 +156,7 @@ std::vector<std::string> remote_command(std::string_view agent, const Machine& m
   std::vector<std::string> command = split_words(agent_or_ssh(agent));
   std::string line;
   for (const std::string& word : words) {
-    line += (line.empty() ? "" : " ") + quoted(word);
+    line += (line.empty() ? "" : " ") + quoted_word(word);
   }
   command.insert(command.end(), {machine.address, line});
   return command;

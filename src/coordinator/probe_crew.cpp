@@ -4,27 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 namespace fexp::coordinator {
-
-namespace {
-
-/// The last line that says something.
-std::string last_line(const std::string& text) {
-  std::istringstream stream(text);
-  std::string last;
-  for (std::string line; std::getline(stream, line);) {
-    const std::size_t end = line.find_last_not_of(" \t\r");
-    if (end != line.npos) {
-      last = line.substr(0, end + 1);
-    }
-  }
-  return last;
-}
-
-}  // namespace
 
 void ProbeCrew::start(Purpose purpose, const Machine& machine, const std::vector<std::string>& command, double now,
                       double limit) {

@@ -17,9 +17,10 @@ constexpr std::int64_t most_shown = std::int64_t{1} << 62;
 
 bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 bool is_space(char c) noexcept { return is_blank(c) || c == '\n'; }
-char lower(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 }  // namespace
+
+char lower_case(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 std::string shown(std::string_view word) {
   constexpr std::size_t most = 40;
@@ -33,7 +34,8 @@ std::string shown(std::string_view word) {
 }
 
 bool same_but_case(std::string_view a, std::string_view b) noexcept {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return lower_case(x) == lower_case(y); });
 }
 
 void TextScanner::skip_space() noexcept {

@@ -66,6 +66,9 @@ class TextScanner {
 /// The word as it may be shown in a message: shortened, without control characters.
 [[nodiscard]] std::string shown(std::string_view word);
 
+/// A capital ASCII letter's small one; other characters as they are.
+[[nodiscard]] char lower_case(char c) noexcept;
+
 /// Whether two words are the same but for the case of ASCII letters.
 [[nodiscard]] bool same_but_case(std::string_view a, std::string_view b) noexcept;
 

@@ -13,7 +13,7 @@ namespace {
 
 /// Free edges nearer to each other than this part of their length are taken for a seam, if nearly parallel.
 constexpr double seam_part = 0.05;
-constexpr double least_cosine = 0.9;
+constexpr double least_seam_cosine = 0.9;
 
 struct FreeEdge {
   Index element{};
@@ -43,7 +43,7 @@ double seam_distance(const FreeEdge& edge, const FreeEdge& other) {
   const Vec3d along = other.end - other.start, way = edge.middle() - other.start;
   const double part = std::clamp(dot(way, along) / (other_length * other_length), 0.0, 1.0);
   const double distance = norm(way - part * along);
-  const bool parallel = std::abs(dot(edge.end - edge.start, along)) >= least_cosine * length * other_length;
+  const bool parallel = std::abs(dot(edge.end - edge.start, along)) >= least_seam_cosine * length * other_length;
   bool meet = false;
   for (const Index n : edge.nodes) {
     meet = meet || n == other.nodes[0] || n == other.nodes[1];

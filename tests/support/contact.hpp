@@ -11,8 +11,6 @@
 /// Surfaces and probes for tests of contact.
 namespace fexp::test {
 
-inline const physics::LinearElastic rubber{1000.0, 1.0e6, 0.4};
-
 inline model::Plate plate(double lx, double ly, int nx, int ny, const char* diagonals = "one") {
   model::Plate p;
   p.length_x = lx;

@@ -13,6 +13,9 @@
 /// Descriptions of small models for tests, built by the same code as a deck's.
 namespace fexp::test {
 
+inline const physics::LinearElastic steel{7850.0, 2.1e11, 0.3};
+inline const physics::LinearElastic rubber{1000.0, 1.0e6, 0.4};
+
 /// Description with one material "m" and one section "s".
 inline model::Description description(const physics::LinearElastic& law, double thickness) {
   model::Description d;

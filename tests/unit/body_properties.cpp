@@ -12,17 +12,17 @@ namespace fexp::model {
 namespace {
 
 constexpr double density = 2000.0;
-constexpr double thickness = 0.02;
+constexpr double slab_thickness = 0.02;
 const physics::LinearElastic law{density, 1.0e9, 0.3};
 
 TEST(body_properties, a_plate_far_away_has_those_of_a_thick_slab) {
-  Description d = test::description(law, thickness);
+  Description d = test::description(law, slab_thickness);
   test::add_body(d, "plate", Plate{3.0, 2.0, 5, 3, "one"}).translate = {1000.0, -500.0, 20.0};
   const BodyProperties p = body_properties(test::build(d), 0);
-  const double mass = density * thickness * 6.0;
+  const double mass = density * slab_thickness * 6.0;
   EXPECT_NEAR(p.mass, mass, 1e-9 * mass);
   EXPECT_NEAR(norm(p.centre - Vec3d{1001.5, -499.0, 20.0}), 0.0, 1e-9);
-  const double t2 = thickness * thickness;
+  const double t2 = slab_thickness * slab_thickness;
   EXPECT_NEAR(p.inertia[0], mass * (4.0 + t2) / 12.0, 1e-9 * mass);
   EXPECT_NEAR(p.inertia[1], mass * (9.0 + t2) / 12.0, 1e-9 * mass);
   EXPECT_NEAR(p.inertia[2], mass * 13.0 / 12.0, 1e-9 * mass);
@@ -32,7 +32,7 @@ TEST(body_properties, a_plate_far_away_has_those_of_a_thick_slab) {
 }
 
 TEST(body_properties, products_of_inertia_have_the_sign_of_the_tensor) {
-  Description d = test::description(law, thickness);
+  Description d = test::description(law, slab_thickness);
   // A strip along the direction (1, 1, 0): the mass lies where x and y have the same sign.
   BodyDescription& strip = test::add_body(d, "strip", Plate{2.0, 0.1, 8, 1, "one"});
   strip.rotate.push_back({{0.0, 0.0, 1.0}, 45.0, {}});
@@ -54,7 +54,7 @@ TEST(body_properties, a_fine_sphere_tends_to_a_thin_shell_with_second_order) {
 }
 
 TEST(body_properties, two_bodies_together_add_up_by_the_parallel_axis_theorem) {
-  Description d = test::description(law, thickness);
+  Description d = test::description(law, slab_thickness);
   test::add_body(d, "left", CubedSphere{0.5, 4}).translate = {-3.0, 0.0, 0.0};
   test::add_body(d, "right", CubedSphere{0.5, 4}).translate = {3.0, 0.0, 0.0};
   const Model model = test::build(d);

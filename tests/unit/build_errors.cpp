@@ -14,7 +14,7 @@ namespace {
 
 using test::add_body;
 
-const physics::LinearElastic steel{7850.0, 2.1e11, 0.3};
+using test::steel;
 
 Description good() {
   Description d = test::description(steel, 0.01);

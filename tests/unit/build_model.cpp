@@ -22,7 +22,7 @@ namespace {
 using test::add_body;
 using test::build;
 
-const physics::LinearElastic steel{7850.0, 2.1e11, 0.3};
+using test::steel;
 constexpr double thickness = 0.004;
 
 Description one_body(const MeshGenerator& mesh) {

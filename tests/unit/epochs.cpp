@@ -11,7 +11,7 @@
 namespace fexp::cluster {
 namespace {
 
-const physics::LinearElastic rubber{1000.0, 1.0e6, 0.4};
+using test::rubber;
 constexpr double far = 1.0e9;  // a target that no epoch reaches
 
 model::Plate plate(double side, int cells) {

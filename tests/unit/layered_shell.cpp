@@ -10,7 +10,7 @@
 namespace fexp::physics {
 namespace {
 
-const J2Linear steel{{7850.0, 200e9, 0.3}, 250e6, 2e9};
+const J2Linear yielding_steel{{7850.0, 200e9, 0.3}, 250e6, 2e9};
 
 ShellIncrement<double> increment(double size) {
   return {size * 1.0, size * -0.3, size * 0.7,
@@ -23,7 +23,7 @@ ShellIncrement<double> increment(double size) {
 TEST(layered_shell, is_the_elastic_shell_below_the_yield_stress) {
   for (const auto& [rule, count] :
        {std::pair{Quadrature::gauss, 2}, {Quadrature::gauss, 5}, {Quadrature::lobatto, 3}, {Quadrature::lobatto, 8}}) {
-    test::LayeredDriver<J2Linear> layered(steel, 0.01, count, rule);
+    test::LayeredDriver<J2Linear> layered(yielding_steel, 0.01, count, rule);
     ShellResultants<double> elastic{};
     for (int i = 0; i < 10; ++i) {
       layered.step(increment(1e-6));
@@ -54,7 +54,7 @@ TEST(layered_shell, thins_as_it_is_stretched) {
 
 /// Energy that was put in is stored elastically or dissipated.
 TEST(layered_shell, internal_energy_is_elastic_energy_and_dissipation) {
-  test::LayeredDriver<J2Linear> layered(steel, 0.01, 5);
+  test::LayeredDriver<J2Linear> layered(yielding_steel, 0.01, 5);
   // Stretched, bent and brought back until nothing is left of the resultants in the middle of a step.
   for (int i = 0; i < 20000; ++i) {
     layered.step({1e-6, -3e-7, 0.0, 2e-4, 0.0, 0.0, 0.0, 0.0, {}});

@@ -16,7 +16,7 @@
 namespace fexp {
 namespace {
 
-const physics::LinearElastic rubber{1000.0, 1.0e6, 0.4};
+using test::rubber;
 
 model::Plate plate(double side, int cells, const char* diagonals = "one") {
   model::Plate p;

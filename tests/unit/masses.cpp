@@ -16,7 +16,7 @@
 namespace fexp {
 namespace {
 
-const physics::LinearElastic rubber{1000.0, 1.0e6, 0.4};
+using test::rubber;
 
 /// A plate of 10 x 10 cells, with a strip of much finer cells as another body.
 model::Description coarse_and_fine() {

@@ -17,7 +17,7 @@ namespace {
 using test::add_body;
 using test::build;
 
-const physics::LinearElastic steel{7850.0, 2.1e11, 0.3};
+using test::steel;
 
 /// Three copies "p[i,0,0]" of a plate of 3 x 3 nodes, side by side, and a sphere "s".
 Description plates_and_sphere() {

@@ -14,7 +14,7 @@
 namespace fexp {
 namespace {
 
-const physics::LinearElastic rubber{1000.0, 1.0e6, 0.4};
+using test::rubber;
 
 model::Curve bump() { return {"bump", {{0.0, 0.0}, {0.05, 1.0}, {0.12, -0.4}, {0.2, 0.3}}, {}}; }
 

@@ -18,7 +18,7 @@ namespace {
 
 using std::numbers::pi;
 
-const physics::LinearElastic rubber{1000.0, 1.0e6, 0.4};
+using test::rubber;
 constexpr double thickness = 0.02;
 
 /// A rigid plate of 2 x 1 in the xy plane, centred at (1, 0.5, 0), which the set "plate" has, beside a soft one.

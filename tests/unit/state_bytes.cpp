@@ -14,7 +14,7 @@
 namespace fexp::model {
 namespace {
 
-const physics::LinearElastic steel{7850.0, 2.1e11, 0.3};
+using test::steel;
 
 /// Two plates of 18 triangles each: blocks of 8, 8 and 2 elements.
 Model two_plates() {

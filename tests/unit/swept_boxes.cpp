@@ -12,9 +12,9 @@
 namespace fexp::cluster {
 namespace {
 
-const physics::LinearElastic rubber{1000.0, 1.0e6, 0.4};
+using test::rubber;
 
-model::Plate plate(double side, int cells) {
+model::Plate square_plate(double side, int cells) {
   model::Plate p;
   p.length_x = p.length_y = side;
   p.cells_x = p.cells_y = cells;
@@ -40,8 +40,8 @@ std::vector<Box> swept_boxes(const model::Model& model, const model::State& stat
 
 TEST(swept_boxes, a_box_is_that_of_the_nodes_and_the_allowance_and_the_reach_of_contact) {
   auto d = test::description(rubber, 0.02);
-  test::add_body(d, "low", plate(1.0, 2));
-  test::add_body(d, "high", plate(2.0, 2)).translate = {0.0, 0.0, 5.0};
+  test::add_body(d, "low", square_plate(1.0, 2));
+  test::add_body(d, "high", square_plate(2.0, 2)).translate = {0.0, 0.0, 5.0};
   const model::Model model = test::build(d);
   const std::vector<double> allowance{0.25, 0.5};
   const std::vector<Box> boxes = swept_boxes(model, model::initial_state(model), allowance);
@@ -60,8 +60,8 @@ TEST(swept_boxes, a_box_is_that_of_the_nodes_and_the_allowance_and_the_reach_of_
 
 TEST(swept_boxes, the_allowance_covers_steady_flight_and_barriers_get_none) {
   auto d = test::description(rubber, 0.02);
-  test::add_body(d, "flying", plate(1.0, 2)).velocity = {3.0, 0.0, 4.0};
-  test::add_body(d, "wall", plate(1.0, 2)).translate = {0.0, 0.0, -3.0};
+  test::add_body(d, "flying", square_plate(1.0, 2)).velocity = {3.0, 0.0, 4.0};
+  test::add_body(d, "wall", square_plate(1.0, 2)).translate = {0.0, 0.0, -3.0};
   test::add_box_set(d, "wall", {-1.0, -1.0, -4.0}, {2.0, 2.0, -2.0});
   test::fix(d, "wall", {"x", "y", "z", "rx", "ry", "rz"});
   const model::Model model = test::build(d);
@@ -77,7 +77,7 @@ model::Model restless_plate(unsigned seed) {
   std::uniform_real_distribution<double> number(-1.0, 1.0);
   const double strength = std::pow(10.0, 2.0 * number(random));
   auto d = test::description(rubber, 0.02);
-  test::add_body(d, "plate", plate(1.0, 3)).velocity = {number(random), number(random), number(random)};
+  test::add_body(d, "plate", square_plate(1.0, 3)).velocity = {number(random), number(random), number(random)};
   for (int i = 0; i < 4; ++i) {
     const std::string set = "corner " + std::to_string(i);
     const double x = i % 2, y = i / 2;
@@ -128,7 +128,7 @@ TEST(swept_boxes, no_node_leaves_its_box_unless_the_guard_trips) {
 
 TEST(swept_boxes, prescribed_motion_is_allowed_for_before_it_begins) {
   auto d = test::description(rubber, 0.02);
-  test::add_body(d, "driven", plate(1.0, 2));
+  test::add_body(d, "driven", square_plate(1.0, 2));
   d.curves.push_back({"later", {{0.0, 0.0}, {0.01, 0.0}, {0.02, -2.0}}, {}});
   for (const char* dof : {"x", "y", "z"}) {
     d.prescribed.push_back({"all", dof, 5.0, "later", {}});

@@ -15,7 +15,7 @@ namespace {
 using model::Wall;
 using model::WallShape;
 
-const physics::LinearElastic rubber{1000.0, 1.0e6, 0.4};
+using test::rubber;
 
 /// A model whose only node has the half thickness 0.5 and the stiffness 10.
 model::Model one_node() {

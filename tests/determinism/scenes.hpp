@@ -11,8 +11,6 @@
 /// Small scenes that meet as much of the solver as possible in a few hundred steps.
 namespace fexp::test {
 
-inline const physics::LinearElastic rubber{1000.0, 1.0e6, 0.4};
-
 inline model::CubedSphere sphere(double radius, int cells) {
   model::CubedSphere s;
   s.radius = radius;

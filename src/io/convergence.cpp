@@ -13,8 +13,13 @@ std::optional<double> order_towards(double reference, const MeshResult& coarse, 
   return std::log(before / after) / std::log(fine.factor / coarse.factor);
 }
 
+bool refined_evenly(double coarse, double middle, double fine) noexcept { return coarse * fine == middle * middle; }
+
 std::optional<Extrapolation> extrapolate(const std::array<MeshResult, 3>& meshes) {
   const auto& [coarse, middle, fine] = meshes;
+  if (!refined_evenly(coarse.factor, middle.factor, fine.factor)) {
+    return std::nullopt;
+  }
   const double before = middle.result - coarse.result, after = fine.result - middle.result;
   const double shrinking = before / after;
   if (!(shrinking > 1.0 && std::isfinite(shrinking))) {

@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "io/convergence.hpp"
+
 namespace fexp::io {
 
 namespace {
@@ -227,10 +229,10 @@ void check_meshes(const VerifySettings& settings, ErrorList& errors) {
   }
 }
 
-/// Whether an order can be told without a reference: the last three meshes are refined by one ratio.
+/// Whether an order can be told without a reference.
 bool has_three_meshes(const std::vector<double>& meshes) {
   const std::size_t n = meshes.size();
-  return n >= 3 && meshes[n - 1] * meshes[n - 3] == meshes[n - 2] * meshes[n - 2];
+  return n >= 3 && refined_evenly(meshes[n - 3], meshes[n - 2], meshes[n - 1]);
 }
 
 }  // namespace

@@ -35,5 +35,13 @@ TEST(convergence, finds_no_limit_where_results_swing_spread_or_stay) {
   EXPECT_FALSE(extrapolate({MeshResult{1.0, 1.0}, {2.0, 2.0}, {4.0, 2.0}}));
 }
 
+TEST(convergence, finds_no_order_of_meshes_that_are_not_refined_evenly) {
+  const auto result = [](double factor) { return MeshResult{factor, 7.0 - 2.0 / factor}; };
+  EXPECT_TRUE(extrapolate({result(0.8), result(1.0), result(1.25)}));
+  EXPECT_FALSE(extrapolate({result(0.75), result(1.0), result(1.25)}));
+  EXPECT_TRUE(refined_evenly(0.25, 0.5, 1.0));
+  EXPECT_FALSE(refined_evenly(0.5, 1.0, 4.0));
+}
+
 }  // namespace
 }  // namespace fexp::io

@@ -25,8 +25,8 @@ long ones and refined meshes with `--all` in some minutes. The others are tests 
 cannot say: single elements and steps, laws without a mesh, stresses, higher modes. Some cases have both.
 
 An order is that of the error towards the reference on the two finest meshes where the reference is what meshes
-converge to; otherwise it follows, with the limit, from the three finest meshes. Where results do not approach a limit
-on these, there is none.
+converge to; otherwise it follows, with the limit, from the three finest meshes. Where these are not refined by one ratio,
+or results do not approach a limit on them, there is none.
 
 Made by `tests/verification/make_table.py`; to renew it:
 
@@ -66,6 +66,8 @@ CASES = {
     26: "Two equal strips end to end",
     27: "Penalty bounce",
     28: "Gravity: rest and drop on a plane",
+    29: "Friction",
+    30: "Square tube crush",
     31: "Four spheres",
     32: "Renumbering, rotation and translation of the model",
     33: "Strip with a tip mass",

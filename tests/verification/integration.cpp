@@ -13,7 +13,7 @@ namespace {
 
 using test::verify;
 
-const physics::LinearElastic steel{7850.0, 2.1e11, 0.3};
+using test::steel;
 
 model::Plate plate(double lx, double ly, int nx, int ny, const char* diagonals = "one") {
   model::Plate p;

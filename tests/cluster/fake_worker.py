@@ -93,11 +93,13 @@ class Channel:
         return self.lost
 
 
-def beat(path):
+def beat(path, launcher):
+    """Shows that it is alive, until its launch daemon is gone: MPI ends a process then, whatever it waits for."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    while True:
+    while os.getppid() == launcher:
         path.touch()
         time.sleep(0.2)
+    os._exit(1)
 
 
 def lead(arguments, ranks):
@@ -152,7 +154,8 @@ def main():
     memory = Path(f"/dev/shm/fexp-{os.getuid()}") / arguments.run_id
     memory.parent.mkdir(mode=0o700, exist_ok=True)
     rank, count = int(os.environ["OMPI_COMM_WORLD_RANK"]), int(os.environ["OMPI_COMM_WORLD_SIZE"])
-    threading.Thread(target=beat, args=(memory / os.environ["FEXP_HOST"] / "alive",), daemon=True).start()
+    alive = memory / os.environ["FEXP_HOST"] / "alive"
+    threading.Thread(target=beat, args=(alive, os.getppid()), daemon=True).start()
     ranks = Ranks(memory / "_ranks", arguments.world, rank, count)
     if rank == 0:
         lead(arguments, ranks)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# What makes a build from nothing take a third of the time. Reading the headers of the standard library, of JSON and of
+# What makes a build from nothing take less than half the time. Reading the headers of the standard library, of JSON and of
 # the command line takes several times as long as compiling what a source file says itself, so the sources of layers
 # that compute little are compiled in bundles. In a bundle anonymous namespaces are one: names in them differ within a
 # layer. With a compiler cache every file is compiled alone, as changes of single files are what counts then.

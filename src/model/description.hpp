@@ -11,7 +11,10 @@
 #include "base/errors.hpp"
 #include "base/field.hpp"
 #include "base/vec3.hpp"
+#include "model/contact_settings.hpp"
 #include "model/mesh_generators.hpp"
+#include "model/rigid_walls.hpp"
+#include "model/run_settings.hpp"
 #include "physics/registry.hpp"
 #include "physics/through_thickness.hpp"
 
@@ -342,162 +345,6 @@ struct PointMass {
       Field{"inertia", "mass*length^2", "Rotary inertia added to each node, the same about all axes.",
             &PointMass::inertia, non_negative},
       Field{"total", "-", "The values are totals, shared equally by the nodes of the set.", &PointMass::total},
-  };
-};
-
-/// Meanings of the keys that all rigid walls have.
-namespace wall_texts {
-inline constexpr std::string_view stiffness =
-    "Penalty stiffness per node; from the mass and the first critical step when left out.";
-inline constexpr std::string_view velocity = "Its velocity, multiplied by the curve; or the displacement below.";
-inline constexpr std::string_view displacement = "Its displacement, multiplied by a curve that is zero at the start.";
-inline constexpr std::string_view curve = "Factor in time on its motion; 1 when left out.";
-}  // namespace wall_texts
-
-/// Rigid wall: a half space that nodes cannot enter. It belongs to every island and joins none.
-struct RigidPlane {
-  std::string name;
-  Vec3d point{};           ///< [length]
-  Vec3d normal{};          ///< Points to the free side; normalised when the model is built.
-  double stiffness{-1.0};  ///< Penalty stiffness per node [force/length]; negative: from the first critical step.
-  Place place;
-  Vec3d velocity{};      ///< Times the curve [length/time]
-  Vec3d displacement{};  ///< Times the curve [length]
-  std::string curve;     ///< Factor in time; 1 when empty.
-
-  static constexpr auto fields = std::tuple{
-      Field{"name", "-", "Name used in histories.", &RigidPlane::name, any_number, Presence::required},
-      Field{"point", "length", "A point of the plane.", &RigidPlane::point, any_number, Presence::required},
-      Field{"normal", "-", "Normal, pointing to the free side.", &RigidPlane::normal, any_number, Presence::required},
-      Field{"stiffness", "force/length", wall_texts::stiffness, &RigidPlane::stiffness, positive},
-      Field{"velocity", "length/time", wall_texts::velocity, &RigidPlane::velocity},
-      Field{"displacement", "length", wall_texts::displacement, &RigidPlane::displacement},
-      Field{"curve", "-", wall_texts::curve, &RigidPlane::curve},
-  };
-};
-
-/// Rigid wall: the surface of an endless round cylinder, on one side of which nodes stay.
-struct RigidCylinder {
-  std::string name;
-  Vec3d point{};    ///< Of the axis [length]
-  Vec3d axis{};     ///< Normalised when the model is built.
-  double radius{};  ///< [length]
-  bool inside{false};
-  double stiffness{-1.0};  ///< As that of a plane
-  Place place;
-  Vec3d velocity{};      ///< Times the curve [length/time]
-  Vec3d displacement{};  ///< Times the curve [length]
-  std::string curve;     ///< Factor in time; 1 when empty.
-
-  static constexpr auto fields = std::tuple{
-      Field{"name", "-", "Name used in histories.", &RigidCylinder::name, any_number, Presence::required},
-      Field{"point", "length", "A point of the axis.", &RigidCylinder::point, any_number, Presence::required},
-      Field{"axis", "-", "Direction of the axis.", &RigidCylinder::axis, any_number, Presence::required},
-      Field{"radius", "length", "Its radius.", &RigidCylinder::radius, positive, Presence::required},
-      Field{"inside", "-", "Nodes stay inside; outside when left out.", &RigidCylinder::inside},
-      Field{"stiffness", "force/length", wall_texts::stiffness, &RigidCylinder::stiffness, positive},
-      Field{"velocity", "length/time", wall_texts::velocity, &RigidCylinder::velocity},
-      Field{"displacement", "length", wall_texts::displacement, &RigidCylinder::displacement},
-      Field{"curve", "-", wall_texts::curve, &RigidCylinder::curve},
-  };
-};
-
-/// Rigid wall: the surface of a sphere, on one side of which nodes stay.
-struct RigidSphere {
-  std::string name;
-  Vec3d centre{};   ///< [length]
-  double radius{};  ///< [length]
-  bool inside{false};
-  double stiffness{-1.0};  ///< As that of a plane
-  Place place;
-  Vec3d velocity{};      ///< Times the curve [length/time]
-  Vec3d displacement{};  ///< Times the curve [length]
-  std::string curve;     ///< Factor in time; 1 when empty.
-
-  static constexpr auto fields = std::tuple{
-      Field{"name", "-", "Name used in histories.", &RigidSphere::name, any_number, Presence::required},
-      Field{"centre", "length", "Its centre.", &RigidSphere::centre, any_number, Presence::required},
-      Field{"radius", "length", "Its radius.", &RigidSphere::radius, positive, Presence::required},
-      Field{"inside", "-", "Nodes stay inside; outside when left out.", &RigidSphere::inside},
-      Field{"stiffness", "force/length", wall_texts::stiffness, &RigidSphere::stiffness, positive},
-      Field{"velocity", "length/time", wall_texts::velocity, &RigidSphere::velocity},
-      Field{"displacement", "length", wall_texts::displacement, &RigidSphere::displacement},
-      Field{"curve", "-", wall_texts::curve, &RigidSphere::curve},
-  };
-};
-
-struct ContactSettings {
-  bool enabled{true};
-  bool self{true};            ///< Bodies touch themselves.
-  bool edges{true};           ///< Edges touch edges.
-  double friction{0.0};       ///< Coulomb's coefficient [-]
-  double damping{0.0};        ///< Normal damping, as a part of the critical one of a pair [-]
-  double penalty_scale{1.0};  ///< Factor on the stiffness that mass and first critical step give [-]
-  double stiffness{-1.0};     ///< Penalty stiffness per pair [force/length]; negative: from the first critical step.
-  std::vector<std::array<std::string, 2>> exclude;  ///< Pairs of bodies that do not touch; twice the same: itself.
-  Place place;
-
-  static constexpr auto fields = std::tuple{
-      Field{"enabled", "-", "Contact between all bodies.", &ContactSettings::enabled},
-      Field{"self", "-", "Contact of each body with itself.", &ContactSettings::self},
-      Field{"edges", "-", "Contact of edges with edges, besides that of nodes with elements.", &ContactSettings::edges},
-      Field{"friction", "-", "Coulomb's coefficient of friction.", &ContactSettings::friction, non_negative},
-      Field{"damping", "-", "Damping of the normal motion in contact, as a part of the critical damping of a pair.",
-            &ContactSettings::damping, Range{0.0, 1.0, true, true, ">= 0 and <= 1"}},
-      Field{"penalty_scale", "-", "Factor on the penalty stiffness that mass and first critical step give.",
-            &ContactSettings::penalty_scale, positive},
-      Field{"stiffness", "force/length",
-            "Penalty stiffness of every pair; from the mass and the first critical step when left out.",
-            &ContactSettings::stiffness, positive},
-      Field{"exclude", "-", "Pairs of body names that do not touch; the same name twice: no self-contact.",
-            &ContactSettings::exclude},
-  };
-};
-
-struct RunSettings {
-  static constexpr std::array<std::string_view, 2> analyses{"dynamic", "static"};
-
-  std::string analysis{"dynamic"};
-  double duration{};                ///< [time]
-  double safety{0.9};               ///< Step over the critical step [-]
-  double minimum_step{-1.0};        ///< Elements get mass to reach this step [time]; negative: none does
-  double damping{0.0};              ///< Mass-proportional damping coefficient [1/time]
-  double energy_drift_limit{0.05};  ///< Largest relative energy imbalance [-]
-  double step_collapse{1.0e-3};     ///< Stop when the critical step falls below this part of the first one [-]
-  double drilling{0.1};             ///< Drilling tie factor beta [-]
-  double residual{1.0e-6};          ///< At which a static analysis ends [-]
-  int epoch_steps{64};              ///< Most steps between two looks at the interaction graph
-
-  static constexpr Range safety_range{0.0, 1.0, false, true, "> 0 and <= 1"};
-  static constexpr Range drilling_range{0.0, 1.0, true, true, "0 to 1"};
-  static constexpr Range collapse_range{0.0, 1.0, true, false, ">= 0 and < 1"};
-  static constexpr Range fraction_range{0.0, 1.0, false, false, "> 0 and < 1"};
-  static constexpr Range epoch_range{1.0, 100000.0, true, true, "1 to 100000"};
-  [[nodiscard]] bool is_static() const noexcept { return analysis == "static"; }
-
-  static constexpr auto fields = std::tuple{
-      Field{"analysis", "-",
-            "What is looked for: the motion, or the state of rest that it comes to by itself under damping "
-            "(\"static\").",
-            &RunSettings::analysis, Choices(analyses)},
-      Field{"duration", "time", "Time to integrate over; a static analysis ends before, as soon as it is at rest.",
-            &RunSettings::duration, positive, Presence::required},
-      Field{"safety", "-", "Step as a part of the critical step.", &RunSettings::safety, safety_range},
-      Field{"minimum_step", "time",
-            "Mass scaling: elements that would need a smaller step get as much mass as it takes; none when left out.",
-            &RunSettings::minimum_step, positive},
-      Field{"damping", "1/time", "Mass-proportional damping: force -damping x mass x velocity on every node.",
-            &RunSettings::damping, non_negative},
-      Field{"energy_drift_limit", "-", "The run stops when the relative energy imbalance exceeds this.",
-            &RunSettings::energy_drift_limit, positive},
-      Field{"step_collapse", "-", "The run stops when the critical step falls below this part of the first one.",
-            &RunSettings::step_collapse, collapse_range},
-      Field{"drilling", "-", "Factor of the drilling tie; 0 switches it off.", &RunSettings::drilling, drilling_range},
-      Field{"residual", "-",
-            "A static analysis ends when unbalanced forces and velocities are below this part of the largest so far.",
-            &RunSettings::residual, fraction_range},
-      Field{"epoch_steps", "-", "Most steps between two looks at the interaction graph.", &RunSettings::epoch_steps,
-            epoch_range},
   };
 };
 

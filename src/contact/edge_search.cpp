@@ -2,12 +2,13 @@
 #include "contact/edge_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "contact/edge_watch.hpp"
+#include "contact/near_edges.hpp"
 #include "contact/near_pairs.hpp"
 #include "parallel/parallel.hpp"
-#include "physics/closest_lines.hpp"
 
 namespace fexp::contact {
 
@@ -32,7 +33,10 @@ void EdgeSearch::assign(const model::Model& model, std::span<const Index> bodies
       for (Index edge = 3 * block.first; edge < 3 * (block.first + block.count); ++edge) {
         const Index other = model.neighbour[at(edge / 3)][static_cast<std::size_t>(edge % 3)];
         if (other == no_index || edge / 3 < other) {
-          edges_.push_back({{}, edge, edge_reach(model, edge) * (1.0 + distance_rounding)});
+          NearEdge& near = edges_.emplace_back();
+          near.reach = edge_reach(model, edge) * (1.0 + distance_rounding);
+          near.node = ends_of(model, edge);
+          near.number = edge;
         }
       }
       first_edge_.push_back(static_cast<Index>(edges_.size()));
@@ -44,7 +48,7 @@ void EdgeSearch::assign(const model::Model& model, std::span<const Index> bodies
 
 void EdgeSearch::search(const model::Model& model, const Positions& x, double skin, std::span<const Index> remembered,
                         EdgeCandidates& found) {
-  take_edges(model, x, skin);
+  take_edges(x, skin);
   if (barriers_) {
     leave_out_far_barriers(model);
   }
@@ -53,28 +57,26 @@ void EdgeSearch::search(const model::Model& model, const Positions& x, double sk
   parallel::for_each(static_cast<Index>(pairs_.size()), 1, [&](Index piece) {
     std::vector<Pair>& pairs = pairs_[at(piece)];
     pairs.clear();
-    for (Index a = piece * piece_blocks; a < std::min((piece + 1) * piece_blocks, blocks); ++a) {
-      tree_.query(block_box_[at(a)], [&](Index b) {
-        if (b >= a) {
-          try_blocks(model, x, skin, a, b, pairs);
-        }
-      });
+    for (Index i = piece * piece_blocks; i < std::min((piece + 1) * piece_blocks, blocks); ++i) {
+      try_block(model, skin, i, pairs);
     }
   });
   fill_rows(remembered, found);
 }
 
-void EdgeSearch::take_edges(const model::Model& model, const Positions& x, double skin) {
+std::span<const NearEdge> EdgeSearch::edges_of(Index block) const {
+  return std::span(edges_).subspan(at(first_edge_[at(block)]), at(first_edge_[at(block) + 1] - first_edge_[at(block)]));
+}
+
+void EdgeSearch::take_edges(const Positions& x, double skin) {
   parallel::for_each(static_cast<Index>(blocks_.size()), block_grain, [&](Index i) {
     Box box;
     for (Index k = first_edge_[at(i)]; k < first_edge_[at(i) + 1]; ++k) {
-      Edge& edge = edges_[at(k)];
-      const std::array<Index, 2> n = ends_of(model, edge.number);
-      Box own;
-      own.include(x(n[0]));
-      own.include(x(n[1]));
-      edge.box = own.grown((edge.reach + 0.5 * skin) * (1.0 + distance_rounding));
-      box.include(edge.box);
+      NearEdge& edge = edges_[at(k)];
+      edge.begin = x(edge.node[0]);
+      edge.end = x(edge.node[1]);
+      edge.half_reach = (edge.reach + 0.5 * skin) * (1.0 + distance_rounding);
+      box.include(edge.box());
     }
     block_box_[at(i)] = box;
   });
@@ -96,34 +98,28 @@ void EdgeSearch::leave_out_far_barriers(const model::Model& model) {
   }
 }
 
-/// Appends the pairs of two blocks, or of a block with itself.
-void EdgeSearch::try_blocks(const model::Model& model, const Positions& x, double skin, Index a, Index b,
-                            std::vector<Pair>& pairs) const {
-  const Index body_a = model.blocks[at(blocks_[at(a)])].body, body_b = model.blocks[at(blocks_[at(b)])].body;
-  if ((model.bodies[at(body_a)].barrier && model.bodies[at(body_b)].barrier) || !model.can_touch(body_a, body_b)) {
-    return;
-  }
-  for (Index i = first_edge_[at(a)]; i < first_edge_[at(a) + 1]; ++i) {
-    const Edge& first = edges_[at(i)];
-    if (!first.box.overlaps(block_box_[at(b)])) {
-      continue;
+/// Appends the pairs of a block with itself and with those behind it.
+void EdgeSearch::try_block(const model::Model& model, double skin, Index index, std::vector<Pair>& pairs) const {
+  const std::span<const NearEdge> own = edges_of(index);
+  const Index body = model.blocks[at(blocks_[at(index)])].body;
+  BlockEdges block;  // NOLINT(cppcoreguidelines-pro-type-member-init): make_ready fills it
+  make_ready(own, block);
+  tree_.query(block_box_[at(index)], [&](Index other) {
+    const Index other_body = model.blocks[at(blocks_[at(other)])].body;
+    if (other < index || (model.bodies[at(body)].barrier && model.bodies[at(other_body)].barrier) ||
+        !model.can_touch(body, other_body)) {
+      return;
     }
-    for (Index j = a == b ? i + 1 : first_edge_[at(b)]; j < first_edge_[at(b) + 1]; ++j) {
-      const Edge& second = edges_[at(j)];
-      if (!first.box.overlaps(second.box)) {
-        continue;
-      }
-      const std::array<Index, 2> p = ends_of(model, first.number), q = ends_of(model, second.number);
-      if (p[0] == q[0] || p[0] == q[1] || p[1] == q[0] || p[1] == q[1]) {
-        continue;
-      }
-      const double distance = std::sqrt(physics::edge_distance2(x(p[0]), x(p[1]), x(q[0]), x(q[1])));
-      const double slack = distance * (1.0 - distance_rounding) - (first.reach + second.reach);
-      if (slack <= skin) {
-        pairs.push_back({first.number, second.number, slack});
-      }
+    const std::span<const NearEdge> others = edges_of(other);
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): only what the kernel has written is read
+    std::array<NearEdgePair, at(most_edges) * at(most_edges)> found;
+    const Index count =
+        near_edge_kernels().back()(block, others.data(), static_cast<Index>(others.size()), skin, found.data());
+    for (Index k = 0; k < count; ++k) {
+      const NearEdgePair& pair = found[at(k)];
+      pairs.push_back({own[at(pair.lane)].number, others[at(pair.edge)].number, pair.slack});
     }
-  }
+  });
 }
 
 void EdgeSearch::fill_rows(std::span<const Index> remembered, EdgeCandidates& found) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/box_tree.hpp"
+#include "contact/near_edges.hpp"
 #include "contact/surface.hpp"
 
 namespace fexp::contact {
@@ -31,11 +32,6 @@ class EdgeSearch {
               EdgeCandidates& found);
 
  private:
-  struct Edge {
-    Box box;  ///< Grown by its reach and half the skin
-    Index number{};
-    double reach{};  ///< See edge_reach
-  };
   struct Pair {
     Index first;
     Index second;
@@ -46,14 +42,14 @@ class EdgeSearch {
     }
   };
 
-  void take_edges(const model::Model& model, const Positions& x, double skin);
+  void take_edges(const Positions& x, double skin);
   void leave_out_far_barriers(const model::Model& model);
-  void try_blocks(const model::Model& model, const Positions& x, double skin, Index a, Index b,
-                  std::vector<Pair>& pairs) const;
+  void try_block(const model::Model& model, double skin, Index index, std::vector<Pair>& pairs) const;
+  [[nodiscard]] std::span<const NearEdge> edges_of(Index block) const;
   void fill_rows(std::span<const Index> remembered, EdgeCandidates& found);
 
   std::vector<Index> blocks_;             // Of all bodies, ascending
-  std::vector<Edge> edges_;               // By block
+  std::vector<NearEdge> edges_;           // By block
   std::vector<Index> first_edge_;         // [blocks_ + 1]: into edges_
   std::vector<Box> block_box_;            // [blocks_]
   bool barriers_{};                       // Some of the bodies are

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contact/kernels/near_edge_kernel.hpp"
+
+namespace fexp::contact::kernels {
+
+NearEdgeKernel near_edges_avx512() noexcept { return find_near_edges<Pack<8>>; }
+
+}  // namespace fexp::contact::kernels

@@ -13,6 +13,7 @@
 #include "bench/search_scene.hpp"
 #include "cluster/simulation.hpp"
 #include "contact/candidates.hpp"
+#include "contact/edge_search.hpp"
 #include "model/state.hpp"
 #include "parallel/parallel.hpp"
 
@@ -30,9 +31,21 @@ constexpr int no_such_kernel = 3;
   return simulation.run_epoch(HUGE_VAL);
 }
 
-[[gnu::noinline]] void counted_search(fexp::contact::CandidateSearch& search, const fexp::bench::SearchScene& scene,
-                                      const fexp::model::NodeMotion* motion, fexp::contact::Candidates& found) {
-  search.search(scene.sphere, {motion, 0.0}, scene.skin, {}, found);
+/// The search of a contact, and what it finds.
+struct Search {
+  fexp::contact::BlockPairs near;
+  fexp::contact::CandidateSearch nodes;
+  fexp::contact::EdgeSearch edges;
+  fexp::contact::Candidates found;
+  fexp::contact::EdgeCandidates found_edges;
+};
+
+[[gnu::noinline]] void counted_search(Search& search, const fexp::bench::SearchScene& scene,
+                                      const fexp::model::NodeMotion* motion) {
+  const fexp::contact::Positions x{motion, 0.0};
+  search.near.search(scene.sphere, x, scene.skin);
+  search.nodes.search(scene.sphere, search.near, x, scene.skin, {}, search.found);
+  search.edges.search(search.near, x, scene.skin, {}, search.found_edges);
 }
 
 void print(const fexp::model::Model& model, Index steps, Index searches, Index active_pairs) {
@@ -53,17 +66,17 @@ void step(Scene scene, Index elements, KernelChoice kernel, Index steps) {
   print(model, report.steps, report.searches, report.active_pairs);
 }
 
-/// So many searches, after one that makes room for what is found.
+/// So many searches; the first makes the tree and room for what is found.
 void search(Index elements, Index count) {
   const fexp::bench::SearchScene scene(elements);
   const fexp::model::State state = fexp::model::initial_state(scene.sphere);
-  fexp::contact::CandidateSearch search;
-  fexp::contact::Candidates found;
+  Search search;
   const std::vector<Index> bodies{0};
-  search.assign(scene.sphere, bodies);
-  search.search(scene.sphere, {state.motion.data(), 0.0}, scene.skin, {}, found);
+  search.near.assign(scene.sphere, bodies);
+  search.nodes.assign(scene.sphere, bodies);
+  search.edges.assign(scene.sphere, bodies);
   for (Index i = 0; i < count; ++i) {
-    counted_search(search, scene, state.motion.data(), found);
+    counted_search(search, scene, state.motion.data());
   }
   print(scene.sphere, 0, count, 0);
 }

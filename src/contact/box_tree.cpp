@@ -11,13 +11,23 @@ namespace {
 
 /// Subtrees larger than this are built side by side.
 constexpr Index serial_boxes = 2048;
+/// A tree is built anew when its boxes have grown by this factor.
+constexpr double most_growth = 1.3;
+
+bool is_empty(const Box& box) noexcept { return !(box.low.x <= box.high.x); }
+
+/// Half of it [length^2].
+double surface_of(const Box& box) noexcept {
+  const Vec3d extent = box.high - box.low;
+  return extent.x * extent.y + extent.y * extent.z + extent.z * extent.x;
+}
 
 }  // namespace
 
 void BoxTree::build(std::span<const Box> boxes) {
   centres_.clear();
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (boxes[i].low.x <= boxes[i].high.x) {
+    if (!is_empty(boxes[i])) {
       centres_.push_back({boxes[i].low + boxes[i].high, static_cast<Index>(i)});
     }
   }
@@ -25,6 +35,64 @@ void BoxTree::build(std::span<const Box> boxes) {
   if (!centres_.empty()) {
     build_subtree(0, {0, static_cast<Index>(centres_.size())}, boxes);
   }
+  surface_ = 0.0;
+  for (const Subtree& subtree : subtrees_) {
+    surface_ += surface_of(subtree.box);
+  }
+}
+
+void BoxTree::update(std::span<const Box> boxes) {
+  if (!refit(boxes)) {
+    build(boxes);
+  }
+}
+
+/// Gives the subtrees the boxes of their halves. Whether the tree still is a good one of all boxes.
+bool BoxTree::refit(std::span<const Box> boxes) {
+  const auto none = std::ranges::count_if(boxes, is_empty);
+  Index leaves = 0;
+  double surface = 0.0;
+  // Halves stand behind the whole.
+  for (auto i = static_cast<Index>(subtrees_.size()) - 1; i >= 0; --i) {
+    Subtree& subtree = subtrees_[at(i)];
+    if (subtree.leaf == no_index) {
+      subtree.box = subtrees_[at(lower_half(i))].box;
+      subtree.box.include(subtrees_[at(upper_half(i))].box);
+    } else if (at(subtree.leaf) < boxes.size()) {
+      subtree.box = boxes[at(subtree.leaf)];
+      leaves += is_empty(subtree.box) ? 0 : 1;
+    } else {
+      return false;
+    }
+    surface += is_empty(subtree.box) ? 0.0 : surface_of(subtree.box);
+  }
+  return leaves == static_cast<Index>(boxes.size()) - static_cast<Index>(none) && surface <= most_growth * surface_;
+}
+
+std::vector<BoxTree::Meeting> BoxTree::meetings(std::size_t least) const {
+  std::vector<Meeting> present, parts;
+  if (!subtrees_.empty()) {
+    present.push_back({0, 0});
+  }
+  bool cut = true;
+  while (cut && present.size() < least) {
+    cut = false;
+    parts.clear();
+    for (const Meeting meeting : present) {
+      const Subtree &first = subtrees_[at(meeting.first)], &second = subtrees_[at(meeting.second)];
+      if (!first.box.overlaps(second.box)) {
+        continue;
+      }
+      if (first.leaf != no_index && second.leaf != no_index) {
+        parts.push_back(meeting);
+        continue;
+      }
+      cut = true;
+      for_each_part(meeting, [&](Meeting part) { parts.push_back(part); });
+    }
+    present.swap(parts);
+  }
+  return present;
 }
 
 void BoxTree::build_subtree(Index subtree, IndexRange range, std::span<const Box> boxes) {

@@ -12,21 +12,18 @@ namespace fexp::contact {
 namespace {
 
 constexpr Index piece_blocks = 32;
-constexpr Index block_grain = 512;
+constexpr Index node_grain = 4096;
 constexpr std::size_t most_owned = 3 * at(model::block_lanes);
 
 }  // namespace
 
 void CandidateSearch::assign(const model::Model& model, std::span<const Index> bodies) {
   nodes_.clear();
-  blocks_.clear();
   owned_.clear();
   first_owned_.assign(1, 0);
-  barriers_ = false;
   std::vector<char> taken;
   for (const Index index : bodies) {
     const model::Body& body = model.bodies[at(index)];
-    barriers_ = barriers_ || body.barrier;
     const auto first_local = static_cast<Index>(nodes_.size());
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
       nodes_.push_back(n);
@@ -34,7 +31,6 @@ void CandidateSearch::assign(const model::Model& model, std::span<const Index> b
     taken.assign(at(body.nodes.size()), 0);
     for (Index b = body.blocks.begin; b < body.blocks.end; ++b) {
       const model::ElementBlock& block = model.blocks[at(b)];
-      blocks_.push_back(b);
       for (Index e = block.first; e < block.first + block.count; ++e) {
         for (const Index n : model.triangle[at(e)]) {
           const Index in_body = n - body.nodes.begin;
@@ -49,92 +45,42 @@ void CandidateSearch::assign(const model::Model& model, std::span<const Index> b
       first_owned_.push_back(static_cast<Index>(owned_.size()));
     }
   }
-  node_box_.resize(blocks_.size());
-  pairs_.resize((blocks_.size() + piece_blocks - 1) / piece_blocks);
+  pairs_.resize((first_owned_.size() - 1 + at(piece_blocks) - 1) / at(piece_blocks));
 }
 
-void CandidateSearch::search(const model::Model& model, const Positions& x, double skin,
+void CandidateSearch::search(const model::Model& model, const BlockPairs& near, const Positions& x, double skin,
                              std::span<const Index> remembered, Candidates& found) {
   take_nodes(x);
-  if (barriers_) {
-    leave_out_far_barriers(model, skin);
-  }
-  tree_.build(node_box_);
-  query(model, x, skin);
+  const SearchGeometry geometry{x.motion, model.triangle.data(), model.half_thickness.data(), skin};
+  parallel::for_each(static_cast<Index>(pairs_.size()), 1, [&](Index piece) {
+    std::vector<Pair>& pairs = pairs_[at(piece)];
+    pairs.clear();
+    for (Index i = piece * piece_blocks; i < std::min((piece + 1) * piece_blocks, near.count()); ++i) {
+      try_block(model, near, x, geometry, i, pairs);
+    }
+  });
   fill_rows(remembered, found);
 }
 
 void CandidateSearch::take_nodes(const Positions& x) {
-  parallel::for_each(static_cast<Index>(blocks_.size()), block_grain, [&](Index i) {
-    Box box;
-    for (Index k = first_owned_[at(i)]; k < first_owned_[at(i) + 1]; ++k) {
-      NearNode& node = owned_[at(k)];
-      node.point = x(node.node);
-      box.include(Box{node.point, node.point}.grown(node.reach));
-    }
-    node_box_[at(i)] = box;
-  });
-}
-
-/// Barriers do not touch each other: of their nodes only those near other bodies are looked for. A barrier may be far
-/// larger than the island.
-void CandidateSearch::leave_out_far_barriers(const model::Model& model, double skin) {
-  const auto is_barrier = [&](std::size_t i) { return model.bodies[at(model.blocks[at(blocks_[i])].body)].barrier; };
-  free_ = {};
-  double thickest = 0.0;
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    if (!is_barrier(i)) {
-      free_.include(node_box_[i]);
-      for (Index k = first_owned_[i]; k < first_owned_[i + 1]; ++k) {
-        thickest = std::max(thickest, model.half_thickness[at(owned_[at(k)].node)]);
-      }
-    }
-  }
-  // Reaches are larger than half thicknesses, so that the elements of the other bodies lie well inside.
-  const Box touched = free_.grown((thickest + skin) * (1.0 + 2.0 * distance_rounding));
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    if (is_barrier(i) && !touched.overlaps(node_box_[i])) {
-      node_box_[i] = {};
-    }
-  }
-}
-
-void CandidateSearch::query(const model::Model& model, const Positions& x, double skin) {
-  const SearchGeometry geometry{x.motion, model.triangle.data(), model.half_thickness.data(), skin};
-  const auto blocks = static_cast<Index>(blocks_.size());
-  parallel::for_each(static_cast<Index>(pairs_.size()), 1, [&](Index piece) {
-    std::vector<Pair>& pairs = pairs_[at(piece)];
-    pairs.clear();
-    for (Index i = piece * piece_blocks; i < std::min((piece + 1) * piece_blocks, blocks); ++i) {
-      try_block(model, x, geometry, blocks_[at(i)], pairs);
-    }
+  parallel::for_each(static_cast<Index>(owned_.size()), node_grain, [&](Index k) {
+    NearNode& node = owned_[at(k)];
+    node.point = x(node.node);
   });
 }
 
 /// Appends the pairs of one block's elements.
-void CandidateSearch::try_block(const model::Model& model, const Positions& x, const SearchGeometry& geometry,
-                                Index index, std::vector<Pair>& pairs) const {
-  const model::ElementBlock& block = model.blocks[at(index)];
+void CandidateSearch::try_block(const model::Model& model, const BlockPairs& near, const Positions& x,
+                                const SearchGeometry& geometry, Index index, std::vector<Pair>& pairs) const {
+  const std::span<const Index> others = near.near(index);
+  if (others.empty()) {
+    return;
+  }
+  const model::ElementBlock& block = model.blocks[at(near.blocks()[at(index)])];
   const NearKernel& kernel = near_kernels().back();
   BlockTriangles triangles;  // NOLINT(cppcoreguidelines-pro-type-member-init): kernel.prepare fills it
   kernel.prepare(geometry, block, triangles);
-  const auto lowest = [&](Index row) {
-    return *std::min_element(triangles.rows[at(row)].begin(), triangles.rows[at(row)].end());
-  };
-  const auto highest = [&](Index row) {
-    return *std::max_element(triangles.rows[at(row)].begin(), triangles.rows[at(row)].end());
-  };
-  const Box box{{lowest(row_low), lowest(row_low + 1), lowest(row_low + 2)},
-                {highest(row_high), highest(row_high + 1), highest(row_high + 2)}};
-  const bool barrier = model.bodies[at(block.body)].barrier;
-  if (barrier && !free_.overlaps(box)) {
-    return;
-  }
-  tree_.query(box, [&](Index other) {
-    const Index body = model.blocks[at(blocks_[at(other)])].body;
-    if ((barrier && model.bodies[at(body)].barrier) || !model.can_touch(body, block.body)) {
-      return;
-    }
+  for (const Index other : others) {
     const NearNode* const nodes = &owned_[at(first_owned_[at(other)])];
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): only what kernel.find has written is read
     std::array<NearPair, most_owned * at(model::block_lanes)> found;
@@ -146,7 +92,7 @@ void CandidateSearch::try_block(const model::Model& model, const Positions& x, c
         pairs.push_back({nodes[pair.node].local, block.first + pair.lane, pair.slack});
       }
     }
-  });
+  }
 }
 
 /// Sorts the pairs by node; within a node they already ascend, because the pieces do.

@@ -18,7 +18,8 @@ class EdgeContact {
   void assign(const model::Model& model, std::span<const Index> bodies, std::span<const Index> all,
               const model::State& state);
 
-  void search(const model::Model& model, const Positions& x, double skin);
+  /// `near`: of the island at these positions.
+  void search(const BlockPairs& near, const Positions& x, double skin);
 
   /// Looks at all pairs; no two nodes have moved by more than `moved` relative to each other since the last search.
   void look(const model::Model& model, const Positions& now, const Positions& before, double moved);

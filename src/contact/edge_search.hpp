@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/box_tree.hpp"
+#include "contact/block_pairs.hpp"
 #include "contact/near_edges.hpp"
 #include "contact/surface.hpp"
 
@@ -20,15 +20,16 @@ struct EdgeCandidates {
   std::vector<double> slack;
 };
 
-/// Finds pairs of edges that are near each other with a tree over boxes: every edge belongs to the block of the lower
-/// of its elements, and the edges of blocks whose boxes overlap are tried with each other.
+/// Finds pairs of edges that are near each other: every edge belongs to the block of the lower of its elements, and the
+/// edges of blocks that may touch each other are tried with each other.
 class EdgeSearch {
  public:
   /// Takes up the bodies to search among, ascending, barriers included.
   void assign(const model::Model& model, std::span<const Index> bodies);
 
-  /// `remembered`: first edges (ascending, repeats allowed) that get a row in any case.
-  void search(const model::Model& model, const Positions& x, double skin, std::span<const Index> remembered,
+  /// `near`: of the same bodies, positions and skin. `remembered`: first edges (ascending, repeats allowed) that get a
+  /// row in any case.
+  void search(const BlockPairs& near, const Positions& x, double skin, std::span<const Index> remembered,
               EdgeCandidates& found);
 
  private:
@@ -43,18 +44,13 @@ class EdgeSearch {
   };
 
   void take_edges(const Positions& x, double skin);
-  void leave_out_far_barriers(const model::Model& model);
-  void try_block(const model::Model& model, double skin, Index index, std::vector<Pair>& pairs) const;
+  void try_block(const BlockPairs& near, double skin, Index block, std::vector<Pair>& pairs) const;
   [[nodiscard]] std::span<const NearEdge> edges_of(Index block) const;
   void fill_rows(std::span<const Index> remembered, EdgeCandidates& found);
 
-  std::vector<Index> blocks_;             // Of all bodies, ascending
   std::vector<NearEdge> edges_;           // By block
-  std::vector<Index> first_edge_;         // [blocks_ + 1]: into edges_
-  std::vector<Box> block_box_;            // [blocks_]
-  bool barriers_{};                       // Some of the bodies are
-  BoxTree tree_;                          // Of block_box_
-  std::vector<std::vector<Pair>> pairs_;  // By piece of blocks_
+  std::vector<Index> first_edge_;         // [blocks + 1]: into edges_
+  std::vector<std::vector<Pair>> pairs_;  // By piece of the blocks
   std::vector<Pair> sorted_;
 };
 

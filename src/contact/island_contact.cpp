@@ -56,6 +56,7 @@ void IslandContact::assign(const model::Model& model, std::span<const Index> bod
   std::vector<Index> all(bodies.begin(), bodies.end());
   all.insert(all.end(), barriers.begin(), barriers.end());
   std::sort(all.begin(), all.end());
+  near_.assign(model, all);
   search_.assign(model, all);
   double size = 0.0;
   for (const Index n : search_.nodes()) {
@@ -132,7 +133,8 @@ void IslandContact::search(const model::Model& model, const Positions& x) {
   for (const model::ContactSide& side : memory) {
     remembered.push_back(side.node);
   }
-  search_.search(model, x, skin_, remembered, candidates_);
+  near_.search(model, x, skin_);
+  search_.search(model, near_, x, skin_, remembered, candidates_);
   const std::span<const Index> nodes = search_.nodes();
   searched_at_.resize(nodes.size());
   parallel::for_each(search_.node_count(), node_grain, [&](Index i) { searched_at_[at(i)] = x(nodes[at(i)]); });
@@ -147,7 +149,7 @@ void IslandContact::search(const model::Model& model, const Positions& x) {
   ++report_.searches;
   report_.candidates = static_cast<Index>(candidates_.element.size());
   if (with_edges_) {
-    edges_.search(model, x, skin_);
+    edges_.search(near_, x, skin_);
     report_.candidates += edges_.candidate_count();
   }
 }

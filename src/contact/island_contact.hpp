@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "contact/block_pairs.hpp"
 #include "contact/candidates.hpp"
 #include "contact/edge_contact.hpp"
 #include "contact/node_watch.hpp"
@@ -78,6 +79,7 @@ class IslandContact {
   [[nodiscard]] double relative_motion(const Positions& x);
   [[nodiscard]] static Index owner(const model::Model& model, Index node, Index element);
 
+  BlockPairs near_;
   CandidateSearch search_;
   Candidates candidates_;
   EdgeContact edges_;

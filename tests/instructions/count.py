@@ -32,8 +32,9 @@ PARTS = {
     "node kernel": ("fexp::solve::kernels::update_nodes_{kernel}", "node and step"),
     "critical step": ("fexp::solve::kernels::smallest_step_{kernel}", "element"),
     "contact forces": ("fexp::contact::IslandContact::evaluate", "element and step"),
-    "search": ("fexp::contact::CandidateSearch::search", "node and search"),
-    "tree": ("fexp::contact::BoxTree::build", "node and search"),
+    "block pairs": ("fexp::contact::BlockPairs::search", "element and search"),
+    "node search": ("fexp::contact::CandidateSearch::search", "element and search"),
+    "edge search": ("fexp::contact::EdgeSearch::search", "element and search"),
 }
 
 
@@ -52,9 +53,9 @@ CASES = (
     Case("plate", 3200, "avx2", 64, ("epoch", "step", "element kernel", "node kernel", "critical step")),
     Case("plate", 3200, "baseline", 64, ("epoch", "step", "element kernel", "node kernel")),
     Case("held_plate", 3200, "avx2", 64, ("epoch", "step")),
-    Case("quiet_plate", 3200, "avx2", 128, ("epoch", "step", "search")),
+    Case("quiet_plate", 3200, "avx2", 128, ("epoch", "step", "block pairs", "node search", "edge search")),
     Case("meeting_spheres", 1536, "avx2", 64, ("epoch", "step", "contact forces")),
-    Case("search", 3200, "avx2", 4, ("search", "tree")),
+    Case("search", 3200, "avx2", 4, ("block pairs", "node search", "edge search")),
 )
 
 

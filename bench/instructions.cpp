@@ -12,8 +12,7 @@
 #include "bench/scenes.hpp"
 #include "bench/search_scene.hpp"
 #include "cluster/simulation.hpp"
-#include "contact/candidates.hpp"
-#include "contact/edge_search.hpp"
+#include "contact/whole_search.hpp"
 #include "model/state.hpp"
 #include "parallel/parallel.hpp"
 
@@ -31,21 +30,17 @@ constexpr int no_such_kernel = 3;
   return simulation.run_epoch(HUGE_VAL);
 }
 
-/// The search of a contact, and what it finds.
-struct Search {
-  fexp::contact::BlockPairs near;
-  fexp::contact::CandidateSearch nodes;
-  fexp::contact::EdgeSearch edges;
-  fexp::contact::Candidates found;
-  fexp::contact::EdgeCandidates found_edges;
+struct Found {
+  fexp::contact::Candidates nodes;
+  fexp::contact::EdgeCandidates edges;
 };
 
-[[gnu::noinline]] void counted_search(Search& search, const fexp::bench::SearchScene& scene,
-                                      const fexp::model::NodeMotion* motion) {
+[[gnu::noinline]] void counted_search(fexp::contact::WholeSearch& search, const fexp::bench::SearchScene& scene,
+                                      const fexp::model::NodeMotion* motion, Found& found) {
   const fexp::contact::Positions x{motion, 0.0};
-  search.near.search(scene.sphere, x, scene.skin);
-  search.nodes.search(scene.sphere, search.near, x, scene.skin, {}, search.found);
-  search.edges.search(search.near, x, scene.skin, {}, search.found_edges);
+  search.find_partners(scene.sphere, x, scene.skin);
+  search.find_nodes(scene.sphere, x, scene.skin, {}, found.nodes);
+  search.find_edges(x, scene.skin, {}, found.edges);
 }
 
 void print(const fexp::model::Model& model, Index steps, Index searches, Index active_pairs) {
@@ -70,13 +65,12 @@ void step(Scene scene, Index elements, KernelChoice kernel, Index steps) {
 void search(Index elements, Index count) {
   const fexp::bench::SearchScene scene(elements);
   const fexp::model::State state = fexp::model::initial_state(scene.sphere);
-  Search search;
+  fexp::contact::WholeSearch search;
+  Found found;
   const std::vector<Index> bodies{0};
-  search.near.assign(scene.sphere, bodies);
-  search.nodes.assign(scene.sphere, bodies);
-  search.edges.assign(scene.sphere, bodies);
+  search.assign(scene.sphere, bodies);
   for (Index i = 0; i < count; ++i) {
-    counted_search(search, scene, state.motion.data());
+    counted_search(search, scene, state.motion.data(), found);
   }
   print(scene.sphere, 0, count, 0);
 }

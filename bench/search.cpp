@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/search_scene.hpp"
-#include "contact/candidates.hpp"
+#include "contact/whole_search.hpp"
 #include "model/state.hpp"
 #include "parallel/parallel.hpp"
 
@@ -72,16 +72,14 @@ void candidate_search(benchmark::State& state) {
   const SearchScene& scene = sphere_of(static_cast<Index>(state.range(0)));
   contact::Candidates found;
   fexp::parallel::with_threads(static_cast<int>(state.range(1)), [&] {
-    contact::BlockPairs near;
-    contact::CandidateSearch search;
+    contact::WholeSearch search;
     const std::vector<Index> bodies{0};
     const auto motion = model::initial_state(scene.sphere).motion;
-    near.assign(scene.sphere, bodies);
     search.assign(scene.sphere, bodies);
     for (auto iteration : state) {
       const contact::Positions x{motion.data(), 0.0};
-      near.search(scene.sphere, x, scene.skin);
-      search.search(scene.sphere, near, x, scene.skin, {}, found);
+      search.find_partners(scene.sphere, x, scene.skin);
+      search.find_nodes(scene.sphere, x, scene.skin, {}, found);
     }
   });
   const double elements = scene.sphere.element_count();

@@ -14,7 +14,7 @@
 #include "bench/search_scene.hpp"
 #include "cluster/simulation.hpp"
 #include "contact/box_tree.hpp"
-#include "contact/candidates.hpp"
+#include "contact/whole_search.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::bench {
@@ -219,17 +219,15 @@ SearchRow measure_search(const SearchCase& search_case, int threads, double seco
     row = {search_case.name, sphere.element_count(), sphere.node_count(), threads, {}, {}};
     contact::BoxTree tree;
     const Rate builds = rate_of_calls(seconds, [&] { tree.build(scene.block_boxes); });
-    contact::BlockPairs near;
-    contact::CandidateSearch search;
+    contact::WholeSearch search;
     contact::Candidates found;
     const std::vector<Index> bodies{0};
     const auto motion = model::initial_state(sphere).motion;
-    near.assign(sphere, bodies);
     search.assign(sphere, bodies);
     const Rate searches = rate_of_calls(seconds, [&] {
       const contact::Positions x{motion.data(), 0.0};
-      near.search(sphere, x, scene.skin);
-      search.search(sphere, near, x, scene.skin, {}, found);
+      search.find_partners(sphere, x, scene.skin);
+      search.find_nodes(sphere, x, scene.skin, {}, found);
     });
     row.trees = scaled(row.elements, builds);
     row.searches = scaled(row.elements, searches);

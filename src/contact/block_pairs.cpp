@@ -47,6 +47,8 @@ void BlockPairs::assign(const model::Model& model, std::span<const Index> bodies
   }
   box_.resize(blocks_.size());
   tree_ = {};
+  start_.assign(blocks_.size() + 1, 0);
+  partner_.clear();
 }
 
 void BlockPairs::search(const model::Model& model, const Positions& x, double skin) {
@@ -98,6 +100,8 @@ void BlockPairs::leave_out_far_barriers(const model::Model& model) {
 
 /// Sorts the pairs by block, each from both sides.
 void BlockPairs::fill_rows() {
+  old_start_.swap(start_);
+  old_partner_.swap(partner_);
   start_.assign(blocks_.size() + 1, 0);
   const auto for_each_side = [&](const auto& visit) {
     for (const std::vector<Pair>& pairs : pairs_) {
@@ -113,11 +117,44 @@ void BlockPairs::fill_rows() {
   for (std::size_t i = 1; i < start_.size(); ++i) {
     start_[i] += start_[i - 1];
   }
-  near_.resize(at(start_.back()));
+  partner_.resize(at(start_.back()));
+  before_.resize(partner_.size());
   place_.assign(start_.begin(), start_.end() - 1);
-  for_each_side([&](Index block, Index other) { near_[at(place_[at(block)]++)] = other; });
-  parallel::for_each(count(), box_grain,
-                     [&](Index i) { std::sort(near_.begin() + start_[at(i)], near_.begin() + start_[at(i) + 1]); });
+  for_each_side([&](Index block, Index other) { partner_[at(place_[at(block)]++)] = other; });
+  parallel::for_each(count(), box_grain, [&](Index i) {
+    std::sort(partner_.begin() + start_[at(i)], partner_.begin() + start_[at(i) + 1]);
+    Index old = old_start_[at(i)];
+    const Index old_end = old_start_[at(i) + 1];
+    for (Index k = start_[at(i)]; k < start_[at(i) + 1]; ++k) {
+      while (old < old_end && old_partner_[at(old)] < partner_[at(k)]) {
+        ++old;
+      }
+      before_[at(k)] = old < old_end && old_partner_[at(old)] == partner_[at(k)] ? old : no_index;
+    }
+  });
+}
+
+Index BlockPairs::find(Index block, Index partner) const noexcept {
+  const auto begin = partner_.begin() + start_[at(block)], end = partner_.begin() + start_[at(block) + 1];
+  const auto found = std::lower_bound(begin, end, partner);
+  return found == end || *found != partner ? no_index : static_cast<Index>(found - partner_.begin());
+}
+
+std::vector<Index> BlockPairs::with_partners(std::span<const Index> blocks) const {
+  std::vector<char> taken(blocks_.size());
+  for (const Index block : blocks) {
+    taken[at(block)] = 1;
+    for (Index k = start_[at(block)]; k < start_[at(block) + 1]; ++k) {
+      taken[at(partner_[at(k)])] = 1;
+    }
+  }
+  std::vector<Index> all;
+  for (Index block = 0; block < count(); ++block) {
+    if (taken[at(block)] != 0) {
+      all.push_back(block);
+    }
+  }
+  return all;
 }
 
 }  // namespace fexp::contact

@@ -17,16 +17,32 @@ class BlockPairs {
   /// Takes up the bodies to search among, ascending, barriers included.
   void assign(const model::Model& model, std::span<const Index> bodies);
 
-  /// Finds all pairs of blocks with a node of one closer than the skin to watch distance of a triangle of the other.
+  /// Finds all pairs of blocks with a node of one closer than the skin to watch distance of a triangle of the other, or
+  /// with such edges.
   void search(const model::Model& model, const Positions& x, double skin);
 
   /// Blocks of all bodies, ascending. Elsewhere here blocks are meant by their places in this list.
   [[nodiscard]] std::span<const Index> blocks() const noexcept { return blocks_; }
-  [[nodiscard]] Index count() const noexcept { return static_cast<Index>(blocks_.size()); }
-  /// Partners of a block, ascending, and itself where its body touches itself.
-  [[nodiscard]] std::span<const Index> near(Index block) const noexcept {
-    return std::span(near_).subspan(at(start_[at(block)]), at(start_[at(block) + 1] - start_[at(block)]));
+  /// Nodes of blocks, and which of them are a block's.
+  [[nodiscard]] std::span<const Index> nodes() const noexcept { return node_; }
+  [[nodiscard]] IndexRange nodes_of(Index block) const noexcept {
+    return {first_node_[at(block)], first_node_[at(block) + 1]};
   }
+  /// How far a block's nodes reach beyond their places: half thickness and the margin up to which they are watched.
+  [[nodiscard]] double reach(Index block) const noexcept { return reach_[at(block)]; }
+  [[nodiscard]] Index count() const noexcept { return static_cast<Index>(blocks_.size()); }
+  /// Blocks and all their partners, ascending.
+  [[nodiscard]] std::vector<Index> with_partners(std::span<const Index> blocks) const;
+  /// Where partners of a block stand among those of all, ascending: itself, too, where its body touches itself. Every
+  /// pair stands there twice.
+  [[nodiscard]] IndexRange partners_of(Index block) const noexcept {
+    return {start_[at(block)], start_[at(block) + 1]};
+  }
+  [[nodiscard]] std::span<const Index> partners() const noexcept { return partner_; }
+  /// Where a partner of a block stands, or no_index if it is none.
+  [[nodiscard]] Index find(Index block, Index partner) const noexcept;
+  /// For each of partners(), where it stood before the last search, or no_index.
+  [[nodiscard]] std::span<const Index> before() const noexcept { return before_; }
 
  private:
   struct Pair {
@@ -47,9 +63,12 @@ class BlockPairs {
   bool barriers_{};                       // Some of the bodies are
   BoxTree tree_;                          // Of box_
   std::vector<std::vector<Pair>> pairs_;  // By piece of the tree
-  std::vector<Index> start_;              // [blocks_ + 1]: into near_
-  std::vector<Index> near_;
-  std::vector<Index> place_;  // [blocks_]: where fill_rows has come to
+  std::vector<Index> old_start_;
+  std::vector<Index> old_partner_;
+  std::vector<Index> start_;  // [blocks_ + 1]: into partner_
+  std::vector<Index> partner_;
+  std::vector<Index> before_;  // [partner_]
+  std::vector<Index> place_;   // [blocks_]: where fill_rows has come to
 };
 
 }  // namespace fexp::contact

@@ -11,8 +11,8 @@ namespace fexp::contact {
 
 namespace {
 
-constexpr Index piece_blocks = 32;
-constexpr Index node_grain = 4096;
+constexpr Index search_grain = 32;
+constexpr Index block_grain = 512;
 constexpr std::size_t most_owned = 3 * at(model::block_lanes);
 
 }  // namespace
@@ -45,64 +45,61 @@ void CandidateSearch::assign(const model::Model& model, std::span<const Index> b
       first_owned_.push_back(static_cast<Index>(owned_.size()));
     }
   }
-  pairs_.resize((first_owned_.size() - 1 + at(piece_blocks) - 1) / at(piece_blocks));
+  found_.assign(first_owned_.size() - 1, {});
 }
 
-void CandidateSearch::search(const model::Model& model, const BlockPairs& near, const Positions& x, double skin,
-                             std::span<const Index> remembered, Candidates& found) {
-  take_nodes(x);
+void CandidateSearch::search(const model::Model& model, const BlockPairs& pairs, const BlockWear& wear,
+                             std::span<const Index> blocks, const Positions& x, double skin) {
+  take_nodes(x, pairs.with_partners(blocks));
   const SearchGeometry geometry{x.motion, model.triangle.data(), model.half_thickness.data(), skin};
-  parallel::for_each(static_cast<Index>(pairs_.size()), 1, [&](Index piece) {
-    std::vector<Pair>& pairs = pairs_[at(piece)];
-    pairs.clear();
-    for (Index i = piece * piece_blocks; i < std::min((piece + 1) * piece_blocks, near.count()); ++i) {
-      try_block(model, near, x, geometry, i, pairs);
+  parallel::for_each(static_cast<Index>(blocks.size()), search_grain,
+                     [&](Index i) { try_block(model, pairs, wear, x, geometry, blocks[at(i)]); });
+}
+
+void CandidateSearch::take_nodes(const Positions& x, std::span<const Index> blocks) {
+  parallel::for_each(static_cast<Index>(blocks.size()), block_grain, [&](Index i) {
+    const std::size_t block = at(blocks[at(i)]);
+    for (Index k = first_owned_[block]; k < first_owned_[block + 1]; ++k) {
+      NearNode& node = owned_[at(k)];
+      node.point = x(node.node);
     }
   });
-  fill_rows(remembered, found);
 }
 
-void CandidateSearch::take_nodes(const Positions& x) {
-  parallel::for_each(static_cast<Index>(owned_.size()), node_grain, [&](Index k) {
-    NearNode& node = owned_[at(k)];
-    node.point = x(node.node);
-  });
-}
-
-/// Appends the pairs of one block's elements.
-void CandidateSearch::try_block(const model::Model& model, const BlockPairs& near, const Positions& x,
-                                const SearchGeometry& geometry, Index index, std::vector<Pair>& pairs) const {
-  const std::span<const Index> others = near.near(index);
-  if (others.empty()) {
-    return;
-  }
-  const model::ElementBlock& block = model.blocks[at(near.blocks()[at(index)])];
+/// Finds the pairs of one block's elements.
+void CandidateSearch::try_block(const model::Model& model, const BlockPairs& pairs, const BlockWear& wear,
+                                const Positions& x, const SearchGeometry& geometry, Index index) {
+  std::vector<Pair>& found = found_[at(index)];
+  leave_out_due(pairs, wear, index, found);
+  const model::ElementBlock& block = model.blocks[at(pairs.blocks()[at(index)])];
   const NearKernel& kernel = near_kernels().back();
   BlockTriangles triangles;  // NOLINT(cppcoreguidelines-pro-type-member-init): kernel.prepare fills it
   kernel.prepare(geometry, block, triangles);
-  for (const Index other : others) {
-    const NearNode* const nodes = &owned_[at(first_owned_[at(other)])];
+  const IndexRange partners = pairs.partners_of(index);
+  for (Index p = partners.begin; p < partners.end; ++p) {
+    if (!wear.is_due_and_near(p)) {
+      continue;
+    }
+    const Index partner = pairs.partners()[at(p)];
+    const NearNode* const nodes = &owned_[at(first_owned_[at(partner)])];
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): only what kernel.find has written is read
-    std::array<NearPair, most_owned * at(model::block_lanes)> found;
-    const Index count = kernel.find(triangles, nodes, first_owned_[at(other) + 1] - first_owned_[at(other)],
-                                    geometry.skin, found.data());
+    std::array<NearPair, most_owned * at(model::block_lanes)> near;
+    const Index count = kernel.find(triangles, nodes, first_owned_[at(partner) + 1] - first_owned_[at(partner)],
+                                    geometry.skin, near.data());
     for (Index k = 0; k < count; ++k) {
-      const NearPair& pair = found[at(k)];
+      const NearPair& pair = near[at(k)];
       if (x.has(model, block.first + pair.lane)) {
-        pairs.push_back({nodes[pair.node].local, block.first + pair.lane, pair.slack});
+        found.push_back({nodes[pair.node].local, block.first + pair.lane, partner, pair.slack});
       }
     }
   }
 }
 
-/// Sorts the pairs by node; within a node they already ascend, because the pieces do.
-void CandidateSearch::fill_rows(std::span<const Index> remembered, Candidates& found) {
+/// Sorts the pairs by node; within a node they already ascend, because the blocks do.
+void CandidateSearch::list(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> remembered,
+                           Candidates& found) {
   row_size_.assign(nodes_.size(), 0);
-  for (const std::vector<Pair>& pairs : pairs_) {
-    for (const Pair& pair : pairs) {
-      ++row_size_[at(pair.local)];
-    }
-  }
+  for_each_found(pairs, wear, found_, [&](const Pair& pair, double) { ++row_size_[at(pair.local)]; });
   found.node.clear();
   found.start.assign(1, 0);
   std::size_t next = 0;
@@ -122,13 +119,11 @@ void CandidateSearch::fill_rows(std::span<const Index> remembered, Candidates& f
   found.element.resize(at(found.start.back()));
   found.slack.assign(found.node.size(), HUGE_VAL);
   std::vector<Index> place(found.start.begin(), found.start.end() - 1);
-  for (const std::vector<Pair>& pairs : pairs_) {
-    for (const Pair& pair : pairs) {
-      const std::size_t row = at(row_size_[at(pair.local)]);
-      found.element[at(place[row]++)] = pair.element;
-      found.slack[row] = std::min(found.slack[row], pair.slack);
-    }
-  }
+  for_each_found(pairs, wear, found_, [&](const Pair& pair, double slack) {
+    const std::size_t row = at(row_size_[at(pair.local)]);
+    found.element[at(place[row]++)] = pair.element;
+    found.slack[row] = std::min(found.slack[row], slack);
+  });
 }
 
 }  // namespace fexp::contact

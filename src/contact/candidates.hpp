@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/block_pairs.hpp"
+#include "contact/block_wear.hpp"
 #include "contact/near_pairs.hpp"
 #include "contact/surface.hpp"
 
@@ -27,10 +28,13 @@ class CandidateSearch {
   /// Takes up the bodies to search among, ascending, barriers included.
   void assign(const model::Model& model, std::span<const Index> bodies);
 
-  /// `near`: of the same bodies, positions and skin. `remembered`: nodes (ascending, repeats allowed) that get a row in
-  /// any case.
-  void search(const model::Model& model, const BlockPairs& near, const Positions& x, double skin,
-              std::span<const Index> remembered, Candidates& found);
+  /// Searches those partners of `blocks` that are due. All are of the same bodies.
+  void search(const model::Model& model, const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> blocks,
+              const Positions& x, double skin);
+
+  /// All pairs that searches have found of blocks that are partners, with what is left of their slack. `remembered`:
+  /// nodes (ascending, repeats allowed) that get a row in any case.
+  void list(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> remembered, Candidates& found);
 
   [[nodiscard]] Index node_count() const noexcept { return static_cast<Index>(nodes_.size()); }
   [[nodiscard]] std::span<const Index> nodes() const noexcept { return nodes_; }
@@ -39,19 +43,19 @@ class CandidateSearch {
   struct Pair {
     Index local;  ///< Into nodes_
     Index element;
-    double slack;
+    Index partner;  ///< The block that has the node
+    double slack;   ///< At the search
   };
 
-  void take_nodes(const Positions& x);
-  void try_block(const model::Model& model, const BlockPairs& near, const Positions& x, const SearchGeometry& geometry,
-                 Index block, std::vector<Pair>& pairs) const;
-  void fill_rows(std::span<const Index> remembered, Candidates& found);
+  void take_nodes(const Positions& x, std::span<const Index> blocks);
+  void try_block(const model::Model& model, const BlockPairs& pairs, const BlockWear& wear, const Positions& x,
+                 const SearchGeometry& geometry, Index block);
 
   std::vector<Index> nodes_;              // Of all bodies, ascending
   std::vector<NearNode> owned_;           // [nodes_], by the block that has them
   std::vector<Index> first_owned_;        // [blocks + 1]: into owned_
   std::vector<Index> row_size_;           // [nodes_]
-  std::vector<std::vector<Pair>> pairs_;  // By piece of the blocks
+  std::vector<std::vector<Pair>> found_;  // By block: of its elements
 };
 
 }  // namespace fexp::contact

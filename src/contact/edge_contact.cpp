@@ -38,14 +38,14 @@ std::vector<model::EdgeSide> EdgeContact::all_sides() const {
   return sides;
 }
 
-void EdgeContact::search(const BlockPairs& near, const Positions& x, double skin) {
+void EdgeContact::list(const BlockPairs& pairs, const BlockWear& wear) {
   const std::vector<model::EdgeSide> memory = all_sides();
   std::vector<Index> remembered;
   remembered.reserve(memory.size());
   for (const model::EdgeSide& side : memory) {
     remembered.push_back(side.first);
   }
-  search_.search(near, x, skin, remembered, candidates_);
+  search_.list(pairs, wear, remembered, candidates_);
   const auto rows = static_cast<Index>(candidates_.first.size());
   pieces_.resize(at((rows + rows_per_piece - 1) / rows_per_piece));
   auto next = memory.begin();

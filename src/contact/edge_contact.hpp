@@ -18,10 +18,16 @@ class EdgeContact {
   void assign(const model::Model& model, std::span<const Index> bodies, std::span<const Index> all,
               const model::State& state);
 
-  /// `near`: of the island at these positions.
-  void search(const BlockPairs& near, const Positions& x, double skin);
+  /// See EdgeSearch.
+  void search(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> blocks, const Positions& x,
+              double skin) {
+    search_.search(pairs, wear, blocks, x, skin);
+  }
+  /// Takes up what searches have found.
+  void list(const BlockPairs& pairs, const BlockWear& wear);
 
-  /// Looks at all pairs; no two nodes have moved by more than `moved` relative to each other since the last search.
+  /// Looks at all pairs; no two nodes near each other have moved by more than `moved` relative to each other since
+  /// then.
   void look(const model::Model& model, const Positions& now, const Positions& before, double moved);
 
   /// Calls visit(ActiveEdges) for the pairs with a force, in ascending order.

@@ -14,8 +14,8 @@ namespace fexp::contact {
 
 namespace {
 
-constexpr Index piece_blocks = 32;
-constexpr Index edge_grain = 4096;
+constexpr Index search_grain = 32;
+constexpr Index block_grain = 512;
 
 }  // namespace
 
@@ -38,59 +38,63 @@ void EdgeSearch::assign(const model::Model& model, std::span<const Index> bodies
       first_edge_.push_back(static_cast<Index>(edges_.size()));
     }
   }
-  pairs_.resize((first_edge_.size() - 1 + at(piece_blocks) - 1) / at(piece_blocks));
+  found_.assign(first_edge_.size() - 1, {});
 }
 
-void EdgeSearch::search(const BlockPairs& near, const Positions& x, double skin, std::span<const Index> remembered,
-                        EdgeCandidates& found) {
-  take_edges(x, skin);
-  parallel::for_each(static_cast<Index>(pairs_.size()), 1, [&](Index piece) {
-    std::vector<Pair>& pairs = pairs_[at(piece)];
-    pairs.clear();
-    for (Index i = piece * piece_blocks; i < std::min((piece + 1) * piece_blocks, near.count()); ++i) {
-      try_block(near, skin, i, pairs);
-    }
-  });
-  fill_rows(remembered, found);
+void EdgeSearch::search(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> blocks,
+                        const Positions& x, double skin) {
+  take_edges(x, pairs.with_partners(blocks), skin);
+  parallel::for_each(static_cast<Index>(blocks.size()), search_grain,
+                     [&](Index i) { try_block(pairs, wear, skin, blocks[at(i)]); });
 }
 
 std::span<const NearEdge> EdgeSearch::edges_of(Index block) const {
   return std::span(edges_).subspan(at(first_edge_[at(block)]), at(first_edge_[at(block) + 1] - first_edge_[at(block)]));
 }
 
-void EdgeSearch::take_edges(const Positions& x, double skin) {
-  parallel::for_each(static_cast<Index>(edges_.size()), edge_grain, [&](Index k) {
-    NearEdge& edge = edges_[at(k)];
-    edge.begin = x(edge.node[0]);
-    edge.end = x(edge.node[1]);
-    edge.half_reach = (edge.reach + 0.5 * skin) * (1.0 + distance_rounding);
+void EdgeSearch::take_edges(const Positions& x, std::span<const Index> blocks, double skin) {
+  parallel::for_each(static_cast<Index>(blocks.size()), block_grain, [&](Index i) {
+    const std::size_t block = at(blocks[at(i)]);
+    for (Index k = first_edge_[block]; k < first_edge_[block + 1]; ++k) {
+      NearEdge& edge = edges_[at(k)];
+      edge.begin = x(edge.node[0]);
+      edge.end = x(edge.node[1]);
+      edge.half_reach = (edge.reach + 0.5 * skin) * (1.0 + distance_rounding);
+    }
   });
 }
 
-/// Appends the pairs of a block with itself and with those behind it.
-void EdgeSearch::try_block(const BlockPairs& near, double skin, Index block, std::vector<Pair>& pairs) const {
+/// Finds the pairs of a block with itself and with those behind it.
+void EdgeSearch::try_block(const BlockPairs& pairs, const BlockWear& wear, double skin, Index block) {
+  std::vector<Pair>& found = found_[at(block)];
+  leave_out_due(pairs, wear, block, found);
   const std::span<const NearEdge> own = edges_of(block);
   BlockEdges ready;  // NOLINT(cppcoreguidelines-pro-type-member-init): make_ready fills it
   make_ready(own, ready);
-  const std::span<const Index> all = near.near(block);
-  for (auto other = std::ranges::lower_bound(all, block); other != all.end(); ++other) {
-    const std::span<const NearEdge> others = edges_of(*other);
+  const IndexRange partners = pairs.partners_of(block);
+  for (Index p = partners.begin; p < partners.end; ++p) {
+    const Index partner = pairs.partners()[at(p)];
+    if (partner < block || !wear.is_due_and_near(p)) {
+      continue;
+    }
+    const std::span<const NearEdge> others = edges_of(partner);
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): only what the kernel has written is read
-    std::array<NearEdgePair, at(most_edges) * at(most_edges)> found;
+    std::array<NearEdgePair, at(most_edges) * at(most_edges)> near;
     const Index count =
-        near_edge_kernels().back()(ready, others.data(), static_cast<Index>(others.size()), skin, found.data());
+        near_edge_kernels().back()(ready, others.data(), static_cast<Index>(others.size()), skin, near.data());
     for (Index k = 0; k < count; ++k) {
-      const NearEdgePair& pair = found[at(k)];
-      pairs.push_back({own[at(pair.lane)].number, others[at(pair.edge)].number, pair.slack});
+      const NearEdgePair& pair = near[at(k)];
+      found.push_back({own[at(pair.lane)].number, others[at(pair.edge)].number, partner, pair.slack});
     }
   }
 }
 
-void EdgeSearch::fill_rows(std::span<const Index> remembered, EdgeCandidates& found) {
+void EdgeSearch::list(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> remembered,
+                      EdgeCandidates& found) {
   sorted_.clear();
-  for (const std::vector<Pair>& pairs : pairs_) {
-    sorted_.insert(sorted_.end(), pairs.begin(), pairs.end());
-  }
+  for_each_found(pairs, wear, found_, [&](const Pair& pair, double slack) {
+    sorted_.push_back({pair.first, pair.second, pair.partner, slack});
+  });
   std::sort(sorted_.begin(), sorted_.end());
   found.first.clear();
   found.start.assign(1, 0);

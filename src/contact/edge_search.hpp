@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/block_pairs.hpp"
+#include "contact/block_wear.hpp"
 #include "contact/near_edges.hpp"
 #include "contact/surface.hpp"
 
@@ -27,30 +28,30 @@ class EdgeSearch {
   /// Takes up the bodies to search among, ascending, barriers included.
   void assign(const model::Model& model, std::span<const Index> bodies);
 
-  /// `near`: of the same bodies, positions and skin. `remembered`: first edges (ascending, repeats allowed) that get a
-  /// row in any case.
-  void search(const BlockPairs& near, const Positions& x, double skin, std::span<const Index> remembered,
-              EdgeCandidates& found);
+  /// As those of CandidateSearch; what is remembered are first edges.
+  void search(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> blocks, const Positions& x,
+              double skin);
+  void list(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> remembered, EdgeCandidates& found);
 
  private:
   struct Pair {
     Index first;
     Index second;
-    double slack;
+    Index partner;  ///< The block that has the second
+    double slack;   ///< At the search
 
     friend bool operator<(const Pair& a, const Pair& b) noexcept {
       return a.first != b.first ? a.first < b.first : a.second < b.second;
     }
   };
 
-  void take_edges(const Positions& x, double skin);
-  void try_block(const BlockPairs& near, double skin, Index block, std::vector<Pair>& pairs) const;
+  void take_edges(const Positions& x, std::span<const Index> blocks, double skin);
+  void try_block(const BlockPairs& pairs, const BlockWear& wear, double skin, Index block);
   [[nodiscard]] std::span<const NearEdge> edges_of(Index block) const;
-  void fill_rows(std::span<const Index> remembered, EdgeCandidates& found);
 
   std::vector<NearEdge> edges_;           // By block
   std::vector<Index> first_edge_;         // [blocks + 1]: into edges_
-  std::vector<std::vector<Pair>> pairs_;  // By piece of the blocks
+  std::vector<std::vector<Pair>> found_;  // By block: of its edges and those of blocks behind it
   std::vector<Pair> sorted_;
 };
 

@@ -12,18 +12,15 @@ namespace {
 
 /// The skin as a part of the mean element size: larger means fewer searches and more candidates.
 constexpr double skin_part = 0.4;
-/// A search is due when this part of the skin is used up, however it was measured.
+/// The same of the margin: larger means that the tree of blocks is asked more seldom, and finds more.
+constexpr double margin_part = 1.0;
+/// Partners are looked for again when this part of the margin is used up.
 constexpr double worn_part = 0.8;
 /// By how much more than its velocity says a step moves a node, as a part of its coordinates.
 constexpr double rounding = 1.0e-15;
 constexpr Index rows_per_piece = 64;
 constexpr Index piece_grain = 4;
 constexpr Index node_grain = 4096;
-
-double rounded_way(const Box& box) noexcept {
-  return rounding * std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z), std::abs(box.high.x),
-                              std::abs(box.high.y), std::abs(box.high.z)});
-}
 
 bool by_pair(const model::ContactSide& a, const model::ContactSide& b) noexcept {
   return a.node != b.node ? a.node < b.node : a.element < b.element;
@@ -47,7 +44,6 @@ void IslandContact::assign(const model::Model& model, std::span<const Index> bod
   candidates_ = {};
   report_ = {};
   searched_ = false;
-  moved_ = 0.0;
   enabled_ = model.contact.enabled && (bodies.size() + barriers.size() > 1 || model.can_touch(bodies[0], bodies[0]));
   with_edges_ = enabled_ && model.contact.edges;
   if (!enabled_) {
@@ -56,13 +52,15 @@ void IslandContact::assign(const model::Model& model, std::span<const Index> bod
   std::vector<Index> all(bodies.begin(), bodies.end());
   all.insert(all.end(), barriers.begin(), barriers.end());
   std::sort(all.begin(), all.end());
-  near_.assign(model, all);
+  blocks_.assign(model, all);
   search_.assign(model, all);
   double size = 0.0;
   for (const Index n : search_.nodes()) {
     size += model.node_size[at(n)];
   }
-  skin_ = skin_part * size / static_cast<double>(search_.node_count());
+  size /= static_cast<double>(search_.node_count());
+  skin_ = skin_part * size;
+  margin_ = margin_part * size;
   Piece& piece = pieces_.emplace_back();
   for (const Index body : bodies_) {
     piece.memory.insert(piece.memory.end(), state.sides[at(body)].begin(), state.sides[at(body)].end());
@@ -98,58 +96,57 @@ void IslandContact::store_sides(const model::Model& model, model::State& state) 
   }
 }
 
-/// Largest distance between the displacements of any two nodes since the last search: the diagonal of their box. It
-/// does not grow while the island flies as a whole.
-double IslandContact::relative_motion(const Positions& x) {
-  Box moved, present;
-  const std::span<const Index> nodes = search_.nodes();
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    moved.include(x(nodes[i]) - searched_at_[i]);
-    present.include(x(nodes[i]));
-  }
-  rounded_way_ = rounded_way(present);
-  return norm(moved.high - moved.low) + rounded_way_;
-}
-
 void IslandContact::advance(const model::Model& model, const model::State& state, double largest_way) {
   if (!enabled_ || !searched_) {
     return;
   }
-  moved_ += 2.0 * (largest_way + rounded_way_);
-  if (moved_ <= skin_) {
-    return;
-  }
-  const Positions x = positions(model, state, 0.0, false);
-  moved_ = relative_motion(x);
-  if (moved_ > worn_part * skin_) {
-    search(model, x);
+  way_ += 2.0 * (largest_way + rounded_way_);
+  if (way_ > most_way_) {
+    search_worn(model, positions(model, state, 0.0, false));
   }
 }
 
+void IslandContact::search_all(const model::Model& model, const Positions& x) {
+  blocks_.search(model, x, skin_ + margin_);
+  wear_.begin(blocks_, x);
+  search(model, x);
+  searched_ = true;
+}
+
+/// Searches again where blocks have moved against each other, which is not where the island flies as a whole.
+void IslandContact::search_worn(const model::Model& model, const Positions& x) {
+  wear_.add(blocks_, x, rounded_way_);
+  moved_ += wear_.last();
+  if (wear_.whole() > worn_part * margin_) {
+    blocks_.search(model, x, skin_ + margin_);
+    wear_.take_over(blocks_);
+  }
+  search(model, x);
+}
+
 void IslandContact::search(const model::Model& model, const Positions& x) {
+  const std::vector<Index> due = wear_.take_due(blocks_, skin_);
+  rounded_way_ = rounding * wear_.farthest();
+  way_ = 0.0;
+  most_way_ = std::min(skin_ - wear_.most_used(), margin_ - wear_.whole());
+  if (due.empty()) {
+    return;
+  }
   const std::vector<model::ContactSide> memory = all_sides();
   std::vector<Index> remembered;
   remembered.reserve(memory.size());
   for (const model::ContactSide& side : memory) {
     remembered.push_back(side.node);
   }
-  near_.search(model, x, skin_);
-  search_.search(model, near_, x, skin_, remembered, candidates_);
-  const std::span<const Index> nodes = search_.nodes();
-  searched_at_.resize(nodes.size());
-  parallel::for_each(search_.node_count(), node_grain, [&](Index i) { searched_at_[at(i)] = x(nodes[at(i)]); });
-  Box box;
-  for (const Vec3d& point : searched_at_) {
-    box.include(point);
-  }
-  rounded_way_ = rounded_way(box);
+  search_.search(model, blocks_, wear_, due, x, skin_);
+  search_.list(blocks_, wear_, remembered, candidates_);
   cut_into_pieces(memory);
   moved_ = 0.0;
-  searched_ = true;
   ++report_.searches;
   report_.candidates = static_cast<Index>(candidates_.element.size());
   if (with_edges_) {
-    edges_.search(near_, x, skin_);
+    edges_.search(blocks_, wear_, due, x, skin_);
+    edges_.list(blocks_, wear_);
     report_.candidates += edges_.candidate_count();
   }
 }
@@ -181,7 +178,7 @@ void IslandContact::look(const model::Model& model, const Positions& now, const 
       ++end;
     }
     // Nothing remembered and nothing near enough yet: most rows on most steps.
-    if (known != end || candidates_.slack[at(row)] <= moved_) {
+    if (known != end || candidates_.slack[at(row)] <= moved_ + way_) {
       const std::span<const Index> elements(candidates_.element.data() + candidates_.start[at(row)],
                                             candidates_.element.data() + candidates_.start[at(row) + 1]);
       watch.look(node, elements, {known, end}, piece.next_memory, piece.active);
@@ -199,10 +196,10 @@ ContactReport IslandContact::evaluate(const model::Model& model, const model::St
   const bool still = dt == 0.0;
   const Positions now = positions(model, state, 0.0, still), before = positions(model, state, dt, still);
   if (!searched_) {
-    search(model, now);
+    search_all(model, now);
   }
   if (with_edges_) {
-    edges_.look(model, now, before, moved_);
+    edges_.look(model, now, before, moved_ + way_);
   }
   parallel::for_each(static_cast<Index>(pieces_.size()), piece_grain,
                      [&](Index i) { look(model, now, before, pieces_[at(i)]); });

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/block_pairs.hpp"
+#include "contact/block_wear.hpp"
 #include "contact/candidates.hpp"
 #include "contact/edge_contact.hpp"
 #include "contact/node_watch.hpp"
@@ -67,6 +68,8 @@ class IslandContact {
     std::vector<ActivePair> active;
   };
 
+  void search_all(const model::Model& model, const Positions& x);
+  void search_worn(const model::Model& model, const Positions& x);
   void search(const model::Model& model, const Positions& x);
   void cut_into_pieces(const std::vector<model::ContactSide>& memory);
   void look(const model::Model& model, const Positions& now, const Positions& before, Piece& piece) const;
@@ -76,18 +79,20 @@ class IslandContact {
            BodyContact* bodies);
   void count(double stiffness, double depth, Index node, Index element);
   [[nodiscard]] std::vector<model::ContactSide> all_sides() const;
-  [[nodiscard]] double relative_motion(const Positions& x);
   [[nodiscard]] static Index owner(const model::Model& model, Index node, Index element);
 
-  BlockPairs near_;
+  BlockPairs blocks_;
+  BlockWear wear_;
   CandidateSearch search_;
   Candidates candidates_;
   EdgeContact edges_;
   std::vector<Piece> pieces_;
-  std::vector<Vec3d> searched_at_;  // [search_.nodes()]: positions at the last search
   std::vector<Index> bodies_;
   double skin_{};
-  double moved_{};        ///< Bound of the relative motion of any two nodes since the last search [length]
+  double margin_{};       ///< More, up to which blocks are partners [length]
+  double way_{};          ///< Bound of the relative motion of any two nodes since wear was measured [length]
+  double most_way_{};     ///< What it may come to before wear must be measured [length]
+  double moved_{};        ///< The same of two nodes near each other since candidates were listed, less way_ [length]
   double rounded_way_{};  ///< Bound of what rounding adds to a node's way in a step [length]
   bool enabled_{};
   bool with_edges_{};

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "contact/candidates.hpp"
+#include "contact/whole_search.hpp"
 #include "model/state.hpp"
 #include "support/contact.hpp"
 
@@ -68,9 +68,7 @@ TEST(candidates, are_those_of_a_loop_over_all_pairs) {
   for (const bool self : {false, true}) {
     for (const bool exclude : {false, true}) {
       const model::Model model = bodies_of_all_sizes(self, exclude);
-      BlockPairs near;
-      near.assign(model, all_bodies(model));
-      CandidateSearch search;
+      WholeSearch search;
       search.assign(model, all_bodies(model));
       model::State state = model::initial_state(model);
       std::mt19937 random(1);
@@ -81,8 +79,8 @@ TEST(candidates, are_those_of_a_loop_over_all_pairs) {
         }
         const Positions x{state.motion.data(), 0.0};
         Candidates found;
-        near.search(model, x, skin);
-        search.search(model, near, x, skin, {}, found);
+        search.find_partners(model, x, skin);
+        search.find_nodes(model, x, skin, {}, found);
         EXPECT_EQ(pairs_of(found), slow_pairs(model, x, skin));
         EXPECT_GT(found.element.size(), 100U);
       }
@@ -100,9 +98,7 @@ TEST(candidates, of_a_barrier_are_those_of_a_loop_over_all_pairs) {
   model::Model model = test::build(d);
   model.bodies[0].barrier = true;
   model.bodies[1].barrier = true;
-  BlockPairs near;
-  near.assign(model, all_bodies(model));
-  CandidateSearch search;
+  WholeSearch search;
   search.assign(model, all_bodies(model));
   const model::State built = model::initial_state(model);
   for (const Vec3d& shift : {Vec3d{}, Vec3d{4.3, 0.0, -0.4}, Vec3d{0.0, -4.0, 0.0}, Vec3d{0.0, 0.0, 9.0}}) {
@@ -113,8 +109,8 @@ TEST(candidates, of_a_barrier_are_those_of_a_loop_over_all_pairs) {
     const Positions x{state.motion.data(), 0.0};
     for (const double skin : {0.0, 0.1, 1.0}) {
       Candidates found;
-      near.search(model, x, skin);
-      search.search(model, near, x, skin, {}, found);
+      search.find_partners(model, x, skin);
+      search.find_nodes(model, x, skin, {}, found);
       EXPECT_EQ(pairs_of(found), slow_pairs(model, x, skin)) << shift.x << ", " << shift.y << ", " << skin;
     }
   }
@@ -122,16 +118,14 @@ TEST(candidates, of_a_barrier_are_those_of_a_loop_over_all_pairs) {
 
 TEST(candidates, ascend_and_give_remembered_nodes_a_row_and_each_row_the_slack_of_its_nearest_pair) {
   const model::Model model = bodies_of_all_sizes(true, false);
-  BlockPairs near;
-  near.assign(model, all_bodies(model));
-  CandidateSearch search;
+  WholeSearch search;
   search.assign(model, all_bodies(model));
   const model::State state = model::initial_state(model);
   const Positions x{state.motion.data(), 0.0};
   Candidates found;
   const std::vector<Index> remembered{0, 0, 3, 17, model.node_count() - 1};
-  near.search(model, x, 0.05);
-  search.search(model, near, x, 0.05, remembered, found);
+  search.find_partners(model, x, 0.05);
+  search.find_nodes(model, x, 0.05, remembered, found);
   EXPECT_TRUE(std::is_sorted(found.node.begin(), found.node.end()));
   for (const Index node : remembered) {
     EXPECT_TRUE(std::binary_search(found.node.begin(), found.node.end(), node));

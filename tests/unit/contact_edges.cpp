@@ -7,8 +7,8 @@
 #include <random>
 #include <set>
 
-#include "contact/edge_search.hpp"
 #include "contact/edge_watch.hpp"
+#include "contact/whole_search.hpp"
 #include "support/contact.hpp"
 
 /// Edges against edges.
@@ -238,16 +238,14 @@ TEST(edge_search, finds_all_pairs_and_no_others_whatever_their_blocks_are) {
     state.motion[at(n)].position.z -= 0.4;
   }
   const contact::Positions x{state.motion.data(), 0.0};
-  contact::BlockPairs near;
-  contact::EdgeSearch search;
+  contact::WholeSearch search;
   const std::vector<Index> bodies{0, 1};
-  near.assign(model, bodies);
   search.assign(model, bodies);
   contact::EdgeCandidates found;
   constexpr double skin = 0.2;
   const std::vector<Index> remembered{1, 1, 40};
-  near.search(model, x, skin);
-  search.search(near, x, skin, remembered, found);
+  search.find_partners(model, x, skin);
+  search.find_edges(x, skin, remembered, found);
   std::set<std::pair<Index, Index>> pairs, expected;
   for (std::size_t row = 0; row < found.first.size(); ++row) {
     for (Index c = found.start[row]; c < found.start[row + 1]; ++c) {

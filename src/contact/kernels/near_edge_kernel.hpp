@@ -65,12 +65,12 @@ FEXP_INLINE unsigned may_be_near(const BlockEdges& block, const OneEdge<T>& edge
   return near & ~met & ~lanes_at_most(edge.number, T::load(&block.rows[at(edge_row_number)][lane]));
 }
 
-/// Distance of the edge from those of the block [length]: the closest points of the lines, the first kept on its edge,
-/// the second closest to that and kept on its own, and the first closest to that. The twin of physics::edge_distance2,
-/// rounded otherwise: of parallel edges, whose lines have no closest points, any point of the first will do to begin
-/// with, and where the lines are so nearly parallel that theirs are lost in rounding, too.
+/// Square of the distance of the edge from those of the block [length^2]: the closest points of the lines, the first
+/// kept on its edge, the second closest to that and kept on its own, and the first closest to that. The twin of
+/// physics::edge_distance2, rounded otherwise: of parallel edges, whose lines have no closest points, any point of the
+/// first will do to begin with, and where the lines are so nearly parallel that theirs are lost in rounding, too.
 template <class T>
-FEXP_INLINE T distance(const BlockEdges& block, const OneEdge<T>& edge, std::size_t lane) noexcept {
+FEXP_INLINE T distance2(const BlockEdges& block, const OneEdge<T>& edge, std::size_t lane) noexcept {
   const Vec3<T> along = load_vector<T>(block, edge_row_along, lane);
   const Vec3<T> from = load_vector<T>(block, edge_row_begin, lane) - edge.begin;
   const T first2 = dot(along, along), second2 = dot(edge.along, edge.along), both = dot(along, edge.along);
@@ -81,7 +81,7 @@ FEXP_INLINE T distance(const BlockEdges& block, const OneEdge<T>& edge, std::siz
   const T second = within((both * start + on_second) * edge.inverse2);
   const T first = within((both * second - on_first) * T::load(&block.rows[at(edge_row_inverse2)][lane]));
   const Vec3<T> between = from + first * along - second * edge.along;
-  return square_root(dot(between, between));
+  return dot(between, between);
 }
 
 template <class T>
@@ -100,7 +100,13 @@ Index find_near_edges(const BlockEdges& block, const NearEdge* edges, Index coun
         continue;
       }
       const T reach = edge.reach + T::load(&block.rows[at(edge_row_reach)][lane]);
-      const T slack = distance(block, edge, lane) * T(1.0 - distance_rounding) - reach;
+      const T farthest = (reach + T(skin)) * T(1.0 + 2.0 * distance_rounding);
+      const T apart2 = distance2(block, edge, lane);
+      near &= lanes_at_most(apart2, farthest * farthest);
+      if (near == 0) {
+        continue;
+      }
+      const T slack = square_root(apart2) * T(1.0 - distance_rounding) - reach;
       for (near &= lanes_at_most(slack, T(skin)); near != 0; near &= near - 1) {
         const int i = __builtin_ctz(near);
         *next++ = {static_cast<Index>(lane) + i, e, slack.lane(i)};

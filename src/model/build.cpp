@@ -227,7 +227,8 @@ void check_masses(const Description& description, const Model& model, ErrorList&
 
 }  // namespace
 
-Model build_model(const Description& description, std::span<const Mesh> meshes, ErrorList& errors) {
+Model build_model(const Description& description, std::span<const Mesh> meshes, ErrorList& errors,
+                  std::span<const Vec3d> positions) {
   assert(meshes.size() == description.bodies.size());
   Model model;
   check_description(description, errors);
@@ -246,6 +247,9 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   model.corner_start = std::move(rows.start);
   model.corner = std::move(rows.corner);
   build_node_sets(description, groups, model, errors);
+  if (!positions.empty()) {
+    model.reference_position.assign(positions.begin(), positions.end());
+  }
   build_point_masses(description, model);
   build_masses(description, model);
   build_contact_stiffness(model);

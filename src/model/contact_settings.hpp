@@ -40,6 +40,8 @@ struct ContactPair {
 struct ContactSettings {
   /// Where the penalty stiffness comes from.
   static constexpr std::array<std::string_view, 3> penalties{"step", "element", "given"};
+  /// What becomes of shells that are nearer than their thicknesses allow at the start.
+  static constexpr std::array<std::string_view, 2> treatments{"keep", "remove"};
 
   bool enabled{true};
   bool self{true};            ///< Bodies touch themselves.
@@ -51,6 +53,7 @@ struct ContactSettings {
   double stiffness{-1.0};     ///< Penalty stiffness per pair [force/length]; negative: none is given.
   std::vector<std::array<std::string, 2>> exclude;  ///< Pairs of bodies that do not touch; twice the same: itself.
   std::vector<ContactPair> pairs{};
+  std::string initial_penetrations{"keep"};  ///< One of `treatments`
   Place place;
 
   static constexpr auto fields = std::tuple{
@@ -71,6 +74,11 @@ struct ContactSettings {
       Field{"exclude", "-", "Pairs of body names that do not touch; the same name twice: no self-contact.",
             &ContactSettings::exclude},
       Field{"pairs", "-", "Settings of single pairs of bodies; what is left out is as above.", &ContactSettings::pairs},
+      Field{
+          "initial_penetrations", "-",
+          "What becomes of shells that are nearer at the start than their thicknesses allow: they keep their distance "
+          "without a force (\"keep\"), or their nodes are moved apart before the start, without stress (\"remove\").",
+          &ContactSettings::initial_penetrations, Choices(treatments)},
   };
 };
 

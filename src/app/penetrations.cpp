@@ -41,6 +41,7 @@ Penetration named(const model::Model& model, const contact::PenetratingBodies& b
     }
   }
   if (bodies.crossings > 0) {
+    p.crossing_body = model.bodies[at(contact::body_of_element(model, bodies.first_crossing.edge / 3))].name;
     for (const Index n : contact::ends_of(model, bodies.first_crossing.edge)) {
       p.crossing.push_back(model.node_label[at(n)]);
     }
@@ -72,8 +73,8 @@ std::string nearness_text(const Penetration& p) {
 }
 
 std::string crossing_text(const Penetration& p) {
-  return fmt::format("passes through {} at {} edges, the first from node {} to {} through element {}", other_text(p),
-                     p.crossings, p.crossing[0], p.crossing[1], p.crossing[2]);
+  return fmt::format("passes through {} at {} edges, the first from node {} to {} of body \"{}\", through element {}",
+                     other_text(p), p.crossings, p.crossing[0], p.crossing[1], p.crossing_body, p.crossing[2]);
 }
 
 constexpr std::string_view crossing_cure =

@@ -72,6 +72,7 @@ ordered_json penetration_list(const std::vector<Summary::Penetration>& list) {
                     {"nodes", p.nodes},
                     {"elements", p.elements},
                     {"crossings", p.crossings},
+                    {"crossing_body", p.crossing_body},
                     {"crossing", p.crossing}});
   }
   return json;

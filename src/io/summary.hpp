@@ -82,7 +82,8 @@ struct Summary {
     std::vector<std::int64_t> nodes;       ///< Of the deepest: a node, or the ends of two edges
     std::vector<std::int64_t> elements;    ///< An element, or one at each edge
     std::int64_t crossings{};              ///< Edges that pass through elements
-    std::vector<std::int64_t> crossing{};  ///< Of the first: both nodes and the element
+    std::string crossing_body;             ///< That of the first such edge, which passes through the other body
+    std::vector<std::int64_t> crossing{};  ///< Its nodes, and the element
   };
   struct InitialPenetrations {
     std::vector<Penetration> found;

@@ -196,6 +196,17 @@ CASES = {
         "Expectations of meshes that are not run": Case(
             ('set = "rim"', 'set = "rim"\n\n[verify]\nmeshes = [1.0, 2.0]\n\n[[expect]]\nname = "peak"\n'
              'column = "displacement_z"\nreference = 1.0\ntolerance = 0.1\nmesh = 4.0')),
+        "A penalty stiffness that is given and is not there": Case(
+            ("normal = [0.0, 0.0, 1.0]", 'normal = [0.0, 0.0, 1.0]\n\n[contact]\npenalty = "given"')),
+        "A pair of bodies with settings twice": Case(
+            ("normal = [0.0, 0.0, 1.0]", "normal = [0.0, 0.0, 1.0]\n" + "".join(
+                f'\n[[contact.pairs]]\nbodies = ["{a}", "{b}"]\nfriction = 0.1\n'
+                for a, b in (("ball", "plate"), ("plate", "ball"))))),
+        "A pair of bodies without settings": Case(
+            ("normal = [0.0, 0.0, 1.0]", 'normal = [0.0, 0.0, 1.0]\n\n[[contact.pairs]]\nbodies = ["ball", "plate"]')),
+        "Bodies that pass through each other and cannot be moved apart": Case(
+            ("translate = [0.0, 0.0, 0.15]", "translate = [0.013, 0.007, 0.05]"),
+            ("normal = [0.0, 0.0, 1.0]", 'normal = [0.0, 0.0, 1.0]\n\n[contact]\ninitial_penetrations = "remove"')),
         "A body without a section": Case(('section = "skin"\n' + BALL_MESH, BALL_MESH)),
     },
     "Meshes": {

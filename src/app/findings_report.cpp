@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/penetrations.hpp"
 #include "quality/assess.hpp"
 
 namespace fexp::app {
@@ -65,8 +66,12 @@ std::vector<Finding> all_findings(const Case& loaded, const std::vector<model::M
   if (shorter < few_steps * step) {
     findings.push_back(interval_finding(shorter, step, loaded.deck.units.of("time")));
   }
+  const std::vector<Finding> near = penetration_findings(loaded.penetrations);
+  findings.insert(findings.end(), near.begin(), near.end());
   const std::vector<Finding> mesh = quality::assess(loaded.model, meshes);
   findings.insert(findings.end(), mesh.begin(), mesh.end());
+  std::stable_partition(findings.begin(), findings.end(),
+                        [](const Finding& f) { return f.severity == Severity::warning; });
   return findings;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/load.hpp"
 
+#include "app/penetrations.hpp"
 #include "app/schedule.hpp"
 #include "base/errors.hpp"
 #include "io/output_error.hpp"
@@ -60,6 +61,8 @@ Case load_case(const fs::path& deck, io::InputFiles& files, std::vector<model::M
     errors.throw_if_any();
   }
   loaded.model = model::build_model(loaded.deck.description, meshes, errors);
+  errors.throw_if_any();
+  treat_penetrations(meshes, loaded, errors);
   errors.throw_if_any();
   io::check_output(loaded.deck.output, loaded.model, errors);
   errors.throw_if_any();

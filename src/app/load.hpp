@@ -7,6 +7,7 @@
 
 #include "io/deck.hpp"
 #include "io/input_files.hpp"
+#include "io/summary.hpp"
 #include "model/mesh.hpp"
 #include "model/model.hpp"
 
@@ -17,6 +18,7 @@ struct Case {
   std::string deck_bytes;  ///< As read
   io::Deck deck;           ///< Output intervals filled in
   model::Model model;
+  io::Summary::InitialPenetrations penetrations;  ///< As they were found, and what became of them
 };
 
 /// Reads a deck and its meshes and builds the model. Writes nothing. Throws InputErrors with everything that is wrong.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/keeper.hpp"
+#include "app/penetrations.hpp"
 #include "app/placement_report.hpp"
 #include "app/print.hpp"
 #include "app/progress.hpp"
@@ -78,6 +79,9 @@ void open_output(const Drive& run, const cluster::Simulation& simulation, std::o
                             FEXP_VERSION, loaded.model.element_count(), loaded.model.node_count(),
                             loaded.model.body_count(), run.ranks.size(), parallel::thread_count(),
                             simulation.workspace().kernel.name));
+    for (const std::string& line : penetration_lines(loaded.penetrations)) {
+      output->log(line);
+    }
   } catch (const io::OutputError& error) {
     output.reset();
     failure = error.what();

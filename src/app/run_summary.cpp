@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "app/penetrations.hpp"
 #include "app/placement_report.hpp"
 #include "app/progress.hpp"
 #include "model/added_mass.hpp"
@@ -106,6 +107,7 @@ io::Summary summarise(const Case& loaded, const cluster::Simulation& simulation,
   for (const model::AddedMass& part : model::added_masses(model)) {
     summary.added_mass.push_back({part.body, part.part, part.mass, part.added});
   }
+  summary.initial_penetrations = loaded.penetrations;
   summary.placement = placement_of(simulation);
   summary.network = network_of(simulation);
   if (end.reason == EndReason::fault) {
@@ -126,6 +128,9 @@ std::string summary_text(const io::Summary& s, const io::UnitNames& units, const
   }
   for (const io::Summary::AddedMass& part : s.added_mass) {
     text += added_mass_text(part, units.of("mass"));
+  }
+  for (const std::string& line : penetration_lines(s.initial_penetrations)) {
+    text += "  " + line + "\n";
   }
   text += energies_text(start.energies, present.energies, units.of("force*length"));
   text +=

@@ -26,6 +26,8 @@ struct Range {
 inline constexpr Range any_number{};
 inline constexpr Range positive{0.0, std::numeric_limits<double>::infinity(), false, true, "> 0"};
 inline constexpr Range non_negative{0.0, std::numeric_limits<double>::infinity(), true, true, ">= 0"};
+/// Of damping as a part of the critical one.
+inline constexpr Range damping_range{0.0, 1.0, true, true, ">= 0 and <= 1"};
 
 /// The words a text may be; none: any text.
 using Choices = std::span<const std::string_view>;

@@ -21,6 +21,11 @@ void add_force(double at_first, double at_second, const Vec3d& force, std::array
   ends[3] += of_second;
 }
 
+/// Of a pair whose ends give way by `compliance` in series [force/length].
+double pair_stiffness(const model::ContactLaw& law, double compliance) noexcept {
+  return law.stiffness >= 0.0 ? law.stiffness : law.scale / compliance;
+}
+
 }  // namespace
 
 EdgeWatch::Pair EdgeWatch::pair_at(const Positions& x, Index first, Index second) const {
@@ -123,8 +128,8 @@ EdgeWatch::Place EdgeWatch::place_at(const Pair& p, double first, double second,
 /// Watch distance [length].
 double EdgeWatch::reach_of(const Pair& p) const { return edge_reach(model_, p.first) + edge_reach(model_, p.second); }
 
-double EdgeWatch::stiffness(const Place& place) const {
-  return model_.contact.stiffness >= 0.0 ? model_.contact.stiffness : 1.0 / place.compliance;
+const model::ContactLaw& EdgeWatch::law_of(const Pair& p) const {
+  return model_.contact_laws.of(model_.node_body[at(p.node[0])], model_.node_body[at(p.node[2])]);
 }
 
 void EdgeWatch::look(Index first, std::span<const Index> second, std::span<const model::EdgeSide> memory,
@@ -167,7 +172,7 @@ void EdgeWatch::watch(Index first, Index second, const model::EdgeSide* known, s
     parted.first = first;
     parted.second = second;
     const Vec3d normal = p.lines.sine2 > 0.0 ? (1.0 / norm(p.lines.normal)) * p.lines.normal : Vec3d{};
-    const double stiff = stiffness(place_at(p, p.lines.first, p.lines.second, HUGE_VAL));
+    const double stiff = pair_stiffness(law_of(p), place_at(p, p.lines.first, p.lines.second, HUGE_VAL).compliance);
     parted.dissipated = physics::stored_energy(drag_before, normal, stiff) - 0.5 * dot(drag_before, way_of(p));
     active.push_back(parted);
   }
@@ -201,7 +206,8 @@ void EdgeWatch::push(model::EdgeSide& known, const Pair& p, const Vec3d& drag_be
     return;
   }
   const Vec3d normal = (known.side / norm(p.lines.normal)) * p.lines.normal;
-  const double stiff = stiffness(place), part = sharpness.part;
+  const model::ContactLaw& law = law_of(p);
+  const double stiff = pair_stiffness(law, place.compliance), part = sharpness.part;
   ActiveEdges push;
   push.first = p.first;
   push.second = p.second;
@@ -211,7 +217,7 @@ void EdgeWatch::push(model::EdgeSide& known, const Pair& p, const Vec3d& drag_be
   // The distance grows with the height before the edges are through, and against it behind that.
   const double by_height = depth.by_height + (height < 0.0 ? depth.by_nearness : -depth.by_nearness);
   add_force(place.first, place.second, (-part * stiff * depth.value * by_height) * normal, push.force);
-  leave_to_ends(p, most, height, part * normal, push);
+  leave_to_ends(p, law, most, height, part * normal, push);
   if (!(push.energy > 0.0)) {
     return;
   }
@@ -230,16 +236,17 @@ void EdgeWatch::push(model::EdgeSide& known, const Pair& p, const Vec3d& drag_be
   }
   push.energy *= part;
   push.depth = place.distance > 0.0 ? (place.distance - height) / place.distance : HUGE_VAL;
-  if (drag_law_.acts()) {
-    drag(known, p, place, normal, part * stiff, drag_before, push);
+  if (law.drag.acts()) {
+    drag(known, p, law.drag, place, normal, part * stiff, drag_before, push);
+    push.stiffness *= law.drag.frequency2_factor();
   }
   active.push_back(push);
 }
 
 /// Takes off the energy, for a sharpness of 1, and the force of that end which pushes most against the other edge.
 /// `normal`: times the sharpness.
-void EdgeWatch::leave_to_ends(const Pair& p, double most_distance, double height, const Vec3d& normal,
-                              ActiveEdges& push) const {
+void EdgeWatch::leave_to_ends(const Pair& p, const model::ContactLaw& law, double most_distance, double height,
+                              const Vec3d& normal, ActiveEdges& push) const {
   const double part = norm(normal), reach = reach_of(p);
   double most = 0.0;
   Vec3d at_end, at_crossing;
@@ -257,7 +264,7 @@ void EdgeWatch::leave_to_ends(const Pair& p, double most_distance, double height
     if (!(depth.value > 0.0) || !(distance > 0.0)) {
       continue;
     }
-    const double stiff = stiffness(place), energy = 0.5 * stiff * depth.value * depth.value;
+    const double stiff = pair_stiffness(law, place.compliance), energy = 0.5 * stiff * depth.value * depth.value;
     if (energy > most) {
       most = energy;
       at_most = place;
@@ -272,15 +279,15 @@ void EdgeWatch::leave_to_ends(const Pair& p, double most_distance, double height
   }
 }
 
-void EdgeWatch::drag(model::EdgeSide& known, const Pair& p, const Place& place, const Vec3d& normal, double stiffness,
-                     const Vec3d& drag_before, ActiveEdges& push) const {
+void EdgeWatch::drag(model::EdgeSide& known, const Pair& p, const physics::DragLaw& law, const Place& place,
+                     const Vec3d& normal, double stiffness, const Vec3d& drag_before, ActiveEdges& push) const {
   if (still_) {
     known.drag = drag_before;
     push.energy += physics::stored_energy(known.drag, normal, stiffness);
   } else {
     const double pressed = dot(push.force[2] + push.force[3], normal);
     const physics::Drag drag = physics::drag_of(
-        drag_law_,
+        law,
         {normal, pressed > 0.0 ? pressed : 0.0, stiffness, place.inverse_mass, way_of(p), before_.back - now_.back},
         drag_before);
     known.drag = drag.force;

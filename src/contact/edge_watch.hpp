@@ -22,7 +22,7 @@ struct ActiveEdges {
   double at_second{};
   double energy{};  ///< As of ActivePair, and so on
   double dissipated{};
-  double stiffness{};  ///< A bound where the pair fades
+  double stiffness{};  ///< A bound where the pair fades; more by damping
   double depth{};
 };
 
@@ -42,7 +42,7 @@ class EdgeWatch {
  public:
   /// Where `before` is `now`, as for NodeWatch.
   EdgeWatch(const model::Model& model, Positions now, Positions before)
-      : model_(model), now_(now), before_(before), drag_law_(drag_law_of(model)), still_(before.back == now.back) {}
+      : model_(model), now_(now), before_(before), still_(before.back == now.back) {}
 
   /// Looks at an edge, which has candidates `second` and a memory (both ascending). Appends what is remembered now and
   /// the pairs with a force.
@@ -81,20 +81,19 @@ class EdgeWatch {
   [[nodiscard]] double most_distance(const Pair& pair) const;
   [[nodiscard]] Place place_at(const Pair& pair, double first, double second, double most_distance) const;
   [[nodiscard]] double reach_of(const Pair& pair) const;
-  [[nodiscard]] double stiffness(const Place& place) const;
+  [[nodiscard]] const model::ContactLaw& law_of(const Pair& pair) const;
   [[nodiscard]] static Depth depth_at(double contact_distance, double distance, double height, double reach);
   void watch(Index first, Index second, const model::EdgeSide* known, std::vector<model::EdgeSide>& remembered,
              std::vector<ActiveEdges>& active) const;
   void push(model::EdgeSide& known, const Pair& pair, const Vec3d& drag_before, std::vector<ActiveEdges>& active) const;
-  void leave_to_ends(const Pair& pair, double most_distance, double height, const Vec3d& normal,
-                     ActiveEdges& push) const;
-  void drag(model::EdgeSide& known, const Pair& pair, const Place& place, const Vec3d& normal, double stiffness,
-            const Vec3d& drag_before, ActiveEdges& push) const;
+  void leave_to_ends(const Pair& pair, const model::ContactLaw& law, double most_distance, double height,
+                     const Vec3d& normal, ActiveEdges& push) const;
+  void drag(model::EdgeSide& known, const Pair& pair, const physics::DragLaw& law, const Place& place,
+            const Vec3d& normal, double stiffness, const Vec3d& drag_before, ActiveEdges& push) const;
 
   const model::Model& model_;
   Positions now_;
   Positions before_;
-  physics::DragLaw drag_law_;
   bool still_{};
 };
 

@@ -216,10 +216,9 @@ ContactReport IslandContact::evaluate(const model::Model& model, const model::St
     edges_.for_each_active([&](const ActiveEdges& pair) { add(model, now, pair, nodes, bodies); });
   }
   report_.max_stiffness_over_mass = 0.0;
-  const double factor = 2.0 * drag_law_of(model).frequency2_factor();
   const auto look_at = [&](Index n) {
     report_.max_stiffness_over_mass =
-        std::max(report_.max_stiffness_over_mass, factor * nodes.stiffness[at(n)] / model.mass[at(n)]);
+        std::max(report_.max_stiffness_over_mass, 2.0 * nodes.stiffness[at(n)] / model.mass[at(n)]);
   };
   for (const Piece& piece : pieces_) {
     for (const ActivePair& pair : piece.active) {

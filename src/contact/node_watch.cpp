@@ -313,9 +313,9 @@ double NodeWatch::contact_distance(const Watched& w) const {
 
 /// Series of the node and the corners, these by their weights: what barriers give way is nothing. Elements that share
 /// an edge or a corner give the same there, and no corner gets more than its own stiffness allows.
-double NodeWatch::stiffness(const Watched& w) const {
-  if (model_.contact.stiffness >= 0.0) {
-    return model_.contact.stiffness;
+double NodeWatch::stiffness(const Watched& w, const model::ContactLaw& law) const {
+  if (law.stiffness >= 0.0) {
+    return law.stiffness;
   }
   double compliance = 0.0;
   if (!model_.bodies[at(model_.node_body[at(node_)])].barrier) {
@@ -327,11 +327,15 @@ double NodeWatch::stiffness(const Watched& w) const {
       compliance += w.closest.weight[a] / model_.contact_stiffness[at(t[a])];
     }
   }
-  return 1.0 / compliance;
+  return law.scale / compliance;
+}
+
+const model::ContactLaw& NodeWatch::law_of(const Watched& w) const {
+  return laws_.of(model_.node_body[at(node_)], body_of_element(model_, w.element));
 }
 
 void NodeWatch::push(std::span<const model::ContactSide> memory, std::vector<ActivePair>& active) {
-  const bool drags = drag_law_.acts() && !still_;
+  const bool drags = laws_.drags && !still_;
   handed_on_.assign(drags ? memory.size() : 0, 0);
   for (Watched& w : watched_) {
     if (!w.acts) {
@@ -344,7 +348,8 @@ void NodeWatch::push(std::span<const model::ContactSide> memory, std::vector<Act
       continue;
     }
     ActivePair pair;
-    pair.stiffness = stiffness(w);
+    const model::ContactLaw& law = law_of(w);
+    pair.stiffness = stiffness(w, law);
     pair.node = node_;
     pair.element = w.element;
     pair.weight = w.closest.weight;
@@ -352,11 +357,14 @@ void NodeWatch::push(std::span<const model::ContactSide> memory, std::vector<Act
     pair.force = (pair.stiffness * depth) * normal;
     pair.energy = 0.5 * pair.stiffness * depth * depth;
     pair.depth = distance > 0.0 ? depth / distance : HUGE_VAL;
-    if (drags) {
-      drag(w, memory, pair);
-    } else if (drag_law_.acts()) {
-      pair.force += w.drag;
-      pair.energy += physics::stored_energy(w.drag, normal, pair.stiffness);
+    if (law.drag.acts()) {
+      if (drags) {
+        drag(w, law.drag, memory, pair);
+      } else {
+        pair.force += w.drag;
+        pair.energy += physics::stored_energy(w.drag, normal, pair.stiffness);
+      }
+      pair.stiffness *= law.drag.frequency2_factor();
     }
     active.push_back(pair);
   }
@@ -385,7 +393,8 @@ const model::ContactSide* NodeWatch::drag_before(Index element, std::span<const 
   return nullptr;
 }
 
-void NodeWatch::drag(Watched& w, std::span<const model::ContactSide> memory, ActivePair& pair) {
+void NodeWatch::drag(Watched& w, const physics::DragLaw& law, std::span<const model::ContactSide> memory,
+                     ActivePair& pair) {
   const model::ContactSide* known = drag_before(w.element, memory);
   if (known != nullptr) {
     handed_on_[static_cast<std::size_t>(known - memory.data())] = 1;
@@ -404,7 +413,7 @@ void NodeWatch::drag(Watched& w, std::span<const model::ContactSide> memory, Act
   }
   moving.way = way_of(w);
   moving.dt = before_.back - now_.back;
-  const physics::Drag drag = physics::drag_of(drag_law_, moving, known != nullptr ? known->drag : Vec3d{});
+  const physics::Drag drag = physics::drag_of(law, moving, known != nullptr ? known->drag : Vec3d{});
   w.drag = drag.force;
   pair.force += drag.force;
   pair.energy += drag.stored;
@@ -421,8 +430,8 @@ void NodeWatch::part(std::span<const model::ContactSide> memory, std::vector<Act
     ActivePair parted;
     parted.node = node_;
     parted.element = w.element;
-    parted.dissipated =
-        physics::stored_energy(memory[i].drag, direction(w), stiffness(w)) - 0.5 * dot(memory[i].drag, way_of(w));
+    parted.dissipated = physics::stored_energy(memory[i].drag, direction(w), stiffness(w, law_of(w))) -
+                        0.5 * dot(memory[i].drag, way_of(w));
     active.push_back(parted);
   }
 }

@@ -17,7 +17,7 @@ struct ActivePair {
   Vec3d force;          ///< On the node [force]
   double energy{};      ///< 1/2 k g^2, and that of sticking [force*length]
   double dissipated{};  ///< In this step, by friction and damping [force*length]
-  double stiffness{};   ///< [force/length]; 0 where a pair has parted and only leaves its energy of sticking
+  double stiffness{};   ///< [force/length], more by damping; 0 where a pair has parted and only leaves its energy
   double depth{};       ///< Penetration over contact distance [-]
 };
 
@@ -38,7 +38,7 @@ class NodeWatch {
       : model_(model),
         now_(now),
         before_(before),
-        drag_law_(drag_law_of(model)),
+        laws_(model.contact_laws),
         normals_(model, now),
         normals_before_(model, before),
         still_(before.back == now.back) {}
@@ -73,7 +73,8 @@ class NodeWatch {
   void decide_sides(std::span<const model::ContactSide> memory);
   void leave_one_of_smooth_neighbours();
   void push(std::span<const model::ContactSide> memory, std::vector<ActivePair>& active);
-  void drag(Watched& watched, std::span<const model::ContactSide> memory, ActivePair& pair);
+  void drag(Watched& watched, const physics::DragLaw& law, std::span<const model::ContactSide> memory,
+            ActivePair& pair);
   [[nodiscard]] const model::ContactSide* drag_before(Index element, std::span<const model::ContactSide> memory) const;
   void part(std::span<const model::ContactSide> memory, std::vector<ActivePair>& active);
   [[nodiscard]] Vec3d way_of(const Watched& watched) const;
@@ -83,7 +84,8 @@ class NodeWatch {
   [[nodiscard]] bool could_come_through(const Watched& watched, int home);
   [[nodiscard]] int inherited_side(Index element) const;
   [[nodiscard]] double contact_distance(const Watched& watched) const;
-  [[nodiscard]] double stiffness(const Watched& watched) const;
+  [[nodiscard]] const model::ContactLaw& law_of(const Watched& watched) const;
+  [[nodiscard]] double stiffness(const Watched& watched, const model::ContactLaw& law) const;
   [[nodiscard]] static Vec3d direction(const Watched& watched);
   [[nodiscard]] bool are_neighbours(const Watched& a, const Watched& b) const;
   [[nodiscard]] bool share_corner(Index a, Index b) const;
@@ -91,7 +93,7 @@ class NodeWatch {
   const model::Model& model_;
   Positions now_;
   Positions before_;
-  physics::DragLaw drag_law_;
+  const model::ContactLaws& laws_;
   Normals normals_;
   Normals normals_before_;
   bool still_{};

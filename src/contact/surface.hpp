@@ -120,11 +120,6 @@ struct View {
   return model.blocks[at(model.element_block[at(element)])].body;
 }
 
-/// Friction and damping as the deck sets them.
-[[nodiscard]] inline physics::DragLaw drag_law_of(const model::Model& model) noexcept {
-  return {model.contact.friction, model.contact.damping};
-}
-
 /// The ends of an edge, from corner a to corner a + 1.
 [[nodiscard]] inline std::array<Index, 2> ends_of(const model::Model& model, Index edge) noexcept {
   const auto& t = model.triangle[at(edge / 3)];

@@ -61,6 +61,34 @@ ordered_json added_mass_part(const std::vector<Summary::AddedMass>& parts) {
   return list;
 }
 
+ordered_json penetration_list(const std::vector<Summary::Penetration>& list) {
+  ordered_json json = ordered_json::array();
+  for (const Summary::Penetration& p : list) {
+    json.push_back({{"body", p.body},
+                    {"other_body", p.other_body},
+                    {"count", p.count},
+                    {"depth", p.depth},
+                    {"contact_distance", p.contact_distance},
+                    {"nodes", p.nodes},
+                    {"elements", p.elements},
+                    {"crossings", p.crossings},
+                    {"crossing_body", p.crossing_body},
+                    {"crossing", p.crossing}});
+  }
+  return json;
+}
+
+ordered_json penetrations_part(const Summary::InitialPenetrations& p) {
+  ordered_json json = {{"found", penetration_list(p.found)}, {"removed", p.removed}};
+  if (p.removed) {
+    json["moved_nodes"] = p.moved_nodes;
+    json["largest_move"] = p.largest_move;
+    json["farthest_node"] = p.farthest_node;
+    json["left"] = penetration_list(p.left);
+  }
+  return json;
+}
+
 ordered_json placement_part(const Summary::Placement& p) {
   ordered_json machines = ordered_json::array(), frames = ordered_json::array();
   for (const auto& machine : p.machines) {
@@ -119,6 +147,7 @@ ordered_json to_json(const Summary& s) {
   json["searches"] = s.searches;
   json["deepest_penetration"] = s.deepest_penetration;
   json["added_mass"] = added_mass_part(s.added_mass);
+  json["initial_penetrations"] = penetrations_part(s.initial_penetrations);
   json["kernel"] = s.kernel;
   if (s.exit_reason == "fault") {
     json["fault"] = fault_part(s.fault);

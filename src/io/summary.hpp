@@ -72,6 +72,28 @@ struct Summary {
   };
   std::vector<AddedMass> added_mass;
 
+  /// Two bodies that were nearer before the start than their thicknesses allow, or passed through each other.
+  struct Penetration {
+    std::string body;
+    std::string other_body;                ///< May be the same
+    std::int64_t count{};                  ///< Nodes, and pairs of edges
+    double depth{};                        ///< Of the deepest [length]
+    double contact_distance{};             ///< There [length]
+    std::vector<std::int64_t> nodes;       ///< Of the deepest: a node, or the ends of two edges
+    std::vector<std::int64_t> elements;    ///< An element, or one at each edge
+    std::int64_t crossings{};              ///< Edges that pass through elements
+    std::string crossing_body;             ///< That of the first such edge, which passes through the other body
+    std::vector<std::int64_t> crossing{};  ///< Its nodes, and the element
+  };
+  struct InitialPenetrations {
+    std::vector<Penetration> found;
+    bool removed{};  ///< Nodes were moved
+    std::int64_t moved_nodes{};
+    double largest_move{};            ///< [length]
+    std::int64_t farthest_node{-1};   ///< The node that was moved so far
+    std::vector<Penetration> left{};  ///< What could not be removed
+  } initial_penetrations;
+
   /// Who held what. Machines in the order in which they joined.
   struct Placement {
     struct MachineLine {

@@ -9,7 +9,9 @@
 
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
+#include "model/build_contact.hpp"
 #include "model/build_rigid.hpp"
+#include "model/build_walls.hpp"
 #include "model/condition_lookup.hpp"
 #include "model/element_shares.hpp"
 #include "model/node_sets.hpp"
@@ -56,41 +58,6 @@ void build_sections(const Description& description, Model& model) {
     model.plastic = model.plastic || data.layered.points.count > 0;
     model.can_fail = model.can_fail || data.layered.plasticity.can_fail();
     model.sections.push_back(std::move(data));
-  }
-}
-
-/// What all shapes of walls have.
-template <class RigidWall>
-Wall wall_of(const RigidWall& given, WallShape shape, const Vec3d& point, const Vec3d& direction, const Model& model) {
-  Wall wall;
-  wall.name = given.name;
-  wall.shape = shape;
-  wall.point = point;
-  wall.direction = shape == WallShape::sphere ? Vec3d{} : (1.0 / norm(direction)) * direction;
-  wall.stiffness = given.stiffness;
-  const bool displaced = given.displacement != Vec3d{};
-  wall.moves = displaced || given.velocity != Vec3d{};
-  wall.kind = displaced ? PrescribedKind::displacement : PrescribedKind::velocity;
-  wall.motion = displaced ? given.displacement : given.velocity;
-  for (std::size_t i = 0; i < model.curves.size(); ++i) {
-    wall.curve = model.curves[i].name == given.curve ? static_cast<Index>(i) : wall.curve;
-  }
-  return wall;
-}
-
-void build_walls(const Description& description, Model& model) {
-  for (const RigidPlane& plane : description.planes) {
-    model.walls.push_back(wall_of(plane, WallShape::plane, plane.point, plane.normal, model));
-  }
-  for (const RigidCylinder& cylinder : description.cylinders) {
-    Wall& wall = model.walls.emplace_back(wall_of(cylinder, WallShape::cylinder, cylinder.point, cylinder.axis, model));
-    wall.radius = cylinder.radius;
-    wall.inside = cylinder.inside;
-  }
-  for (const RigidSphere& sphere : description.spheres) {
-    Wall& wall = model.walls.emplace_back(wall_of(sphere, WallShape::sphere, sphere.centre, {}, model));
-    wall.radius = sphere.radius;
-    wall.inside = sphere.inside;
   }
 }
 
@@ -147,7 +114,7 @@ void scale_masses(Model& model, ElementShares& shares) {
   }
 }
 
-/// Lumped masses and inertias, areas, half thicknesses and penalty stiffnesses; each node gathers its own corners.
+/// Lumped masses and inertias, areas and half thicknesses; each node gathers its own corners.
 void build_masses(const Description& description, Model& model) {
   const std::size_t elements = model.triangle.size(), nodes = model.reference_position.size();
   ElementShares shares = element_shares(model);
@@ -161,12 +128,10 @@ void build_masses(const Description& description, Model& model) {
       model.first_critical_element = static_cast<Index>(e);
     }
   }
-  const double frequency = penalty_courant / model.first_critical_step;
   model.mass.resize(nodes);
   model.inertia.resize(nodes);
   model.half_thickness.resize(nodes);
   model.node_size.resize(nodes);
-  model.contact_stiffness.resize(nodes);
   parallel::for_each(model.node_count(), 1024, [&](Index n) {
     double mass = 0.0, inertia = 0.0, thickness = 0.0, area = HUGE_VAL;
     for (Index c = model.corner_start[at(n)]; c < model.corner_start[at(n) + 1]; ++c) {
@@ -185,9 +150,6 @@ void build_masses(const Description& description, Model& model) {
     model.mass[at(point.node)] += point.mass;
     model.inertia[at(point.node)] += point.inertia;
   }
-  parallel::for_each(model.node_count(), 1024, [&](Index n) {
-    model.contact_stiffness[at(n)] = model.contact.penalty_scale * model.mass[at(n)] * frequency * frequency;
-  });
   for (Body& body : model.bodies) {
     for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
       body.mass += model.mass[at(n)];
@@ -263,36 +225,10 @@ void check_masses(const Description& description, const Model& model, ErrorList&
   }
 }
 
-void build_exclusions(const Description& description, Model& model, ErrorList& errors) {
-  const BodyNames names(model);
-  const auto find = [&](const std::string& name) {
-    return names.find(std::span(&name, 1), description.contact.place, "contact.exclude", errors);
-  };
-  for (const auto& [first, second] : description.contact.exclude) {
-    const std::vector<Index> bodies = find(first);
-    if (first == second) {  // Takes self-contact from each copy; copies still touch each other.
-      for (const Index i : bodies) {
-        model.excluded_pairs.emplace_back(i, i);
-      }
-      continue;
-    }
-    for (const Index j : find(second)) {
-      for (const Index i : bodies) {
-        model.excluded_pairs.emplace_back(std::min(i, j), std::max(i, j));
-      }
-    }
-  }
-  for (const RigidBody& rigid : model.rigid_bodies) {  // Its parts keep their distances.
-    model.excluded_pairs.emplace_back(rigid.body, rigid.body);
-  }
-  std::sort(model.excluded_pairs.begin(), model.excluded_pairs.end());
-  model.excluded_pairs.erase(std::unique(model.excluded_pairs.begin(), model.excluded_pairs.end()),
-                             model.excluded_pairs.end());
-}
-
 }  // namespace
 
-Model build_model(const Description& description, std::span<const Mesh> meshes, ErrorList& errors) {
+Model build_model(const Description& description, std::span<const Mesh> meshes, ErrorList& errors,
+                  std::span<const Vec3d> positions) {
   assert(meshes.size() == description.bodies.size());
   Model model;
   check_description(description, errors);
@@ -311,13 +247,17 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   model.corner_start = std::move(rows.start);
   model.corner = std::move(rows.corner);
   build_node_sets(description, groups, model, errors);
+  if (!positions.empty()) {
+    model.reference_position.assign(positions.begin(), positions.end());
+  }
   build_point_masses(description, model);
   build_masses(description, model);
+  build_contact_stiffness(model);
   check_masses(description, model, errors);
   build_velocities(description, model);
   add_velocities(description, model, errors);
   build_rigid_bodies(description, model);
-  build_exclusions(description, model, errors);
+  build_contact_pairs(description, model, errors);
   build_conditions(description, meshes, model, errors);
   return model;
 }

@@ -15,7 +15,9 @@ namespace fexp::model {
 inline constexpr double penalty_courant = 0.3;
 
 /// Freezes a description and the meshes of its bodies (one per body, in order) into a model. Everything wrong is added
-/// to `errors`; the model is usable only when nothing was.
-[[nodiscard]] Model build_model(const Description& description, std::span<const Mesh> meshes, ErrorList& errors);
+/// to `errors`; the model is usable only when nothing was. `positions`, shape [nodes] or empty: where the nodes of a
+/// model built before are to be instead; node sets are as in that.
+[[nodiscard]] Model build_model(const Description& description, std::span<const Mesh> meshes, ErrorList& errors,
+                                std::span<const Vec3d> positions = {});
 
 }  // namespace fexp::model

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "model/build_contact.hpp"
 #include "model/check_tools.hpp"
 #include "model/wall_checks.hpp"
 
@@ -263,6 +264,7 @@ void check_description(const Description& description, ErrorList& errors) {
   check_names("body", description.bodies, {}, errors);
   check_names("node set", description.node_sets, {"all"}, errors);
   check_walls(description, errors);
+  check_contact(description.contact, errors);
 
   const std::vector<std::string> materials = names_of(description.materials);
   const std::vector<std::string> sections = names_of(description.sections);

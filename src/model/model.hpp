@@ -10,7 +10,9 @@
 #include "base/aligned_vector.hpp"
 #include "base/index.hpp"
 #include "base/vec3.hpp"
+#include "model/contact_laws.hpp"
 #include "model/description.hpp"
+#include "physics/drag.hpp"
 #include "physics/layered_section.hpp"
 
 namespace fexp::model {
@@ -158,6 +160,8 @@ struct Wall {
   PrescribedKind kind{};  ///< Velocity or displacement
   Vec3d motion{};         ///< Times the curve [length/time] or [length]
   Index curve{no_index};
+  physics::DragLaw drag{};
+  Index rubbing{no_index};  ///< Its number among the walls with friction or damping; no_index where it has none
 };
 
 struct NamedNodes {
@@ -174,8 +178,9 @@ struct Model {
   std::vector<double> mass;                  ///< Lumped mass [mass]
   std::vector<double> inertia;               ///< Lumped isotropic, scaled rotary inertia [mass*length^2]
   std::vector<double> half_thickness;        ///< Half of the thickest shell at the node [length]
-  /// Penalty stiffness of the node, c^2 m / dt^2 with the first critical step, times penalty_scale [force/length]. A
-  /// pair's stiffness is the series combination of its node and the triangle's corners by their weights.
+  /// Penalty stiffness of the node, c^2 m / dt^2 with the first critical step or E t/2, times penalty_scale
+  /// [force/length]. A pair's stiffness is the series combination of its node and the triangle's corners by their
+  /// weights, unless its law has one.
   std::vector<double> contact_stiffness;
   std::vector<double> node_size;  ///< Square root of the smallest element area at the node [length]
   std::vector<Index> node_body;
@@ -212,11 +217,13 @@ struct Model {
   std::vector<Curve> curves;
   std::vector<std::vector<double>> curve_areas;  ///< Integral of each curve from its first point to each of them [time]
   std::vector<Wall> walls;                       ///< Planes, cylinders and spheres of the deck
+  Index rubbing_walls{};                         ///< Those with friction or damping
   std::vector<NamedNodes> node_sets;
 
   bool plastic{};   ///< Some section has points through its thickness.
   bool can_fail{};  ///< Elements may be deleted.
   ContactSettings contact;
+  ContactLaws contact_laws;
   /// Pairs of bodies (first <= second, sorted) that do not touch.
   std::vector<std::pair<Index, Index>> excluded_pairs;
   RunSettings run;

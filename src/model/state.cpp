@@ -82,7 +82,8 @@ std::size_t bytes_before_sides(const Model& model, const Body& body) {
     const ElementBlock& block = model.blocks[at(b)];
     numbers += at(block.count) * at(element_rows + layer_rows(model, block));
   }
-  return at(body.nodes.size()) * (sizeof(NodeMotion) + sizeof(NodeAcceleration)) + numbers * sizeof(double) +
+  const std::size_t of_node = sizeof(NodeMotion) + sizeof(NodeAcceleration) + at(model.rubbing_walls) * sizeof(Vec3d);
+  return at(body.nodes.size()) * of_node + numbers * sizeof(double) +
          (body.rigid == no_index ? 0 : sizeof(RigidMotion));
 }
 
@@ -210,6 +211,7 @@ State initial_state(const Model& model) {
   }
   state.sides.resize(model.bodies.size());
   state.edge_sides.resize(model.bodies.size());
+  state.wall_drag.resize(model.reference_position.size() * at(model.rubbing_walls));
   state.ledger.resize(model.bodies.size());
   return state;
 }
@@ -222,6 +224,8 @@ void copy_body(const Model& model, const State& from, Index body, State& to) {
   };
   copy(from.motion, to.motion, at(owner.nodes.begin), at(owner.nodes.end));
   copy(from.acceleration, to.acceleration, at(owner.nodes.begin), at(owner.nodes.end));
+  copy(from.wall_drag, to.wall_drag, at(owner.nodes.begin) * at(model.rubbing_walls),
+       at(owner.nodes.end) * at(model.rubbing_walls));
   copy(from.history, to.history, row_offset(owner.blocks.begin, 0), row_offset(owner.blocks.end, 0));
   for (Index b = owner.blocks.begin; b < owner.blocks.end; ++b) {
     const ElementBlock& block = model.blocks[at(b)];
@@ -238,10 +242,10 @@ void copy_body(const Model& model, const State& from, Index body, State& to) {
   to.ledger[at(body)] = from.ledger[at(body)];
 }
 
-// Order: motion of the nodes (x, v, omega), their accelerations (a, alpha), rows of the elements and of their layers
-// block by block (used lanes only), the motion of a rigid body, the numbers of sides of nodes and of edges (64 bits
-// each), the sides of nodes (node, element, side: 32, 32 and 8 bits, drag), those of edges (first, second, side, drag),
-// the ledger. All numbers are little-endian and stand side by side.
+// Order: motion of the nodes (x, v, omega), their accelerations (a, alpha), the drag of rubbing walls node by node,
+// rows of the elements and of their layers block by block (used lanes only), the motion of a rigid body, the numbers of
+// sides of nodes and of edges (64 bits each), the sides of nodes (node, element, side: 32, 32 and 8 bits, drag), those
+// of edges (first, second, side, drag), the ledger. All numbers are little-endian and stand side by side.
 void append_body_bytes(const Model& model, const State& state, Index body, std::vector<std::byte>& bytes) {
   const Body& owner = model.bodies[at(body)];
   const std::vector<ContactSide>& sides = state.sides[at(body)];
@@ -251,6 +255,8 @@ void append_body_bytes(const Model& model, const State& state, Index body, std::
   Writer writer(bytes.data() + before);
   writer.write(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));
   writer.write(state.acceleration.data() + owner.nodes.begin, at(owner.nodes.size()));
+  writer.write(state.wall_drag.data() + at(owner.nodes.begin) * at(model.rubbing_walls),
+               at(owner.nodes.size()) * at(model.rubbing_walls));
   for_each_row(model, owner, state, [&](const double* row, std::size_t count) { writer.write(row, count); });
   if (owner.rigid != no_index) {
     writer.write(&state.rigid[at(owner.rigid)], 1);
@@ -290,6 +296,8 @@ bool read_body_bytes(const Model& model, std::span<const std::byte> bytes, Index
   Reader reader(bytes.data());
   reader.read(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));
   reader.read(state.acceleration.data() + owner.nodes.begin, at(owner.nodes.size()));
+  reader.read(state.wall_drag.data() + at(owner.nodes.begin) * at(model.rubbing_walls),
+              at(owner.nodes.size()) * at(model.rubbing_walls));
   for_each_row(model, owner, state, [&](double* row, std::size_t lanes) { reader.read(row, lanes); });
   if (owner.rigid != no_index) {
     reader.read(&state.rigid[at(owner.rigid)], 1);

@@ -68,12 +68,13 @@ struct EdgeSide {
 
 /// Quantities of one body that are integrated over the run or belong to the last evaluated forces.
 struct BodyLedger {
-  double external_work{};        ///< Loads, gravity and prescribed motion [force*length], integrated
-  double damping_work{};         ///< Work taken out by damping (>= 0) [force*length], integrated
-  double contact_energy{};       ///< Potential of the pairs that are booked to this body [force*length]
-  double contact_dissipation{};  ///< What friction and damping of contact have taken (>= 0) [force*length], integrated
-  double barrier_energy{};       ///< Potential of rigid walls [force*length]
-  Vec3d external_impulse{};      ///< Loads, walls, damping and constraints [force*time], integrated
+  double external_work{};   ///< Loads, gravity and prescribed motion [force*length], integrated
+  double damping_work{};    ///< Work taken out by damping (>= 0) [force*length], integrated
+  double contact_energy{};  ///< Potential of the pairs that are booked to this body [force*length]
+  double
+      contact_dissipation{};  ///< Taken by friction and damping of contact and walls (>= 0) [force*length], integrated
+  double barrier_energy{};    ///< Potential of rigid walls, with that of sticking to them [force*length]
+  Vec3d external_impulse{};   ///< Loads, walls, damping and constraints [force*time], integrated
   Vec3d external_angular_impulse{};  ///< The same about the origin [force*length*time], integrated
 };
 
@@ -90,7 +91,9 @@ struct State {
                                                   // barriers' nodes with its elements
   std::vector<std::vector<EdgeSide>> edge_sides;  // [bodies]: sorted by (first, second); the first edge is the body's,
                                                   // or the second where the first is a barrier's
-  std::vector<BodyLedger> ledger;                 // [bodies]
+  /// Friction and damping of walls at the last step [force], shape [nodes][rubbing walls of the model]
+  std::vector<Vec3d> wall_drag;
+  std::vector<BodyLedger> ledger;  // [bodies]
 };
 
 /// State at time zero: reference positions, initial velocities as far as fixed nodes and planes of symmetry allow, no

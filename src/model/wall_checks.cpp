@@ -14,7 +14,6 @@ namespace fexp::model {
 namespace {
 
 /// A wall moves in one way, if it moves.
-template <class RigidWall>
 void check_wall_motion(std::string_view kind, const RigidWall& wall, const std::vector<Curve>& curves,
                        ErrorList& errors) {
   const std::string name = fmt::format("{} \"{}\"", kind, wall.name);

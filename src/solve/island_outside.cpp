@@ -40,6 +40,7 @@ void IslandSolver::clear_actions(const Step& step, std::size_t index) {
   partial.force = {};
   partial.moment = {};
   partial.barrier_energy = 0.0;
+  partial.wall_dissipation = 0.0;
   partial.barrier_frequency2 = 0.0;
   const std::size_t walls = step.model.walls.size();
   std::fill_n(wall_partials_.begin() + static_cast<std::ptrdiff_t>(index * walls), walls, Vec3d{});
@@ -59,7 +60,14 @@ NodalAction IslandSolver::act_on_node(const Step& step, Index n, std::size_t ind
   }
   double stiffness = 0.0;
   for (std::size_t w = 0; w < walls; ++w) {
-    const WallReaction reaction = wall_reaction(model, model.walls[w], wall_points_[w], n, motion.position);
+    const model::Wall& wall = model.walls[w];
+    WallReaction reaction = wall_reaction(model, wall, wall_points_[w], n, motion.position);
+    if (wall.rubbing != no_index) {
+      // Inside a step the velocity is that of the node's way.
+      const WallSlip slip{step.dt * motion.velocity - wall_ways_[w], step.dt};
+      Vec3d& drag = step.state.wall_drag[at(n) * at(model.rubbing_walls) + at(wall.rubbing)];
+      partial.wall_dissipation += rub(model, wall, slip, n, reaction, drag);
+    }
     outside.force += reaction.force;
     partial.barrier_energy += reaction.energy;
     stiffness += reaction.stiffness;
@@ -109,17 +117,19 @@ void IslandSolver::act_on_bodies(const Step& step) {
     actions.force = workspace.body_contact[at(body)].barrier_force;
     actions.moment = workspace.body_contact[at(body)].barrier_moment;
     std::fill(actions.wall_force.begin(), actions.wall_force.end(), Vec3d{});
-    double barrier_energy = 0.0;
+    double barrier_energy = 0.0, dissipation = 0.0;
     for (; piece < pieces_.size() && pieces_[piece].body == body; ++piece) {
       actions.force += partials_[piece].force;
       actions.moment += partials_[piece].moment;
       barrier_energy += partials_[piece].barrier_energy;
+      dissipation += partials_[piece].wall_dissipation;
       barrier_frequency2_ = maximum(barrier_frequency2_, partials_[piece].barrier_frequency2);
       for (std::size_t w = 0; w < walls; ++w) {
         actions.wall_force[w] += wall_partials_[piece * walls + w];
       }
     }
     step.state.ledger[at(body)].barrier_energy = barrier_energy;
+    step.state.ledger[at(body)].contact_dissipation += dissipation;
     hold_constraints(step.model, step.state, body, actions);
   }
 }

@@ -88,6 +88,7 @@ class IslandSolver {
     double damping_work{};
     double barrier_energy{};
     double barrier_frequency2{};
+    double wall_dissipation{};
     Vec3d force;
     Vec3d moment;
     Vec3d impulse;

@@ -9,7 +9,14 @@ namespace fexp::solve {
 struct WallReaction {
   Vec3d force;         ///< [force]
   double energy{};     ///< 1/2 k g^2 [force*length]
-  double stiffness{};  ///< k while the node touches, else 0 [force/length]
+  double stiffness{};  ///< k while the node touches, else 0; as much more as damping makes of it [force/length]
+  Vec3d normal;        ///< Unit vector away from the wall; zero on the axis and in the centre
+};
+
+/// How far a node has come against the wall in a step.
+struct WallSlip {
+  Vec3d way;    ///< [length]
+  double dt{};  ///< [time]; 0 where no step has been taken
 };
 
 /// Where the wall's point is at `time` [length]: it has moved by its displacement, or by the integral of its velocity.
@@ -19,5 +26,10 @@ struct WallReaction {
 /// g = distance - half thickness < 0.
 [[nodiscard]] WallReaction wall_reaction(const model::Model& model, const model::Wall& wall, const Vec3d& point,
                                          Index node, const Vec3d& position) noexcept;
+
+/// Adds friction and damping to what a wall with such does. `drag` is that of the step before, and becomes that of this
+/// one [force]; where no step has been taken it acts as it is. Returns what is dissipated [force*length].
+[[nodiscard]] double rub(const model::Model& model, const model::Wall& wall, const WallSlip& slip, Index node,
+                         WallReaction& reaction, Vec3d& drag) noexcept;
 
 }  // namespace fexp::solve

@@ -78,7 +78,7 @@ inline model::Description sphere_on_plate() {
   d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
   d.gravity.push_back({{3.0, -2.0, -60.0}, "blow", {}});
   d.pressure.push_back({{"ball"}, "", 20.0, "blow", {}});
-  d.planes.push_back({"floor", {0.0, 0.0, -0.05}, {0.0, 0.1, 1.0}, -1.0, {}, {}, {}, ""});
+  d.planes.push_back({{"floor"}, {0.0, 0.0, -0.05}, {0.0, 0.1, 1.0}});
   add_box_set(d, "left", {-0.01, -0.01, -0.01}, {0.01, 2.01, 0.01});
   add_box_set(d, "right", {1.99, -0.01, -0.01}, {2.01, 2.01, 0.01});
   fix(d, "left", {"x", "y", "z", "rx", "ry", "rz"});
@@ -114,7 +114,7 @@ inline model::Description tube_that_folds() {
   tube.rotate.push_back({{1.0, 0.0, 0.0}, 90.0, {}});
   tube.translate = {0.0, 0.0, 0.33};
   tube.velocity = {0.0, 0.0, -14.0};
-  d.planes.push_back({"ground", {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, -1.0, {}, {}, {}, ""});
+  d.planes.push_back({{"ground"}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}});
   d.run.energy_drift_limit = 1.0;
   return d;
 }
@@ -237,7 +237,7 @@ inline model::Description rigid_machine() {
   d.prescribed = {down, turn};
   d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
   d.pressure.push_back({{"ball"}, "", 30.0, "press", {}});
-  d.planes.push_back({"floor", {0.0, 0.0, -0.05}, {0.0, 0.1, 1.0}, -1.0, {}, {}, {}, ""});
+  d.planes.push_back({{"floor"}, {0.0, 0.0, -0.05}, {0.0, 0.1, 1.0}});
   d.planes.back().displacement = {0.0, 0.0, 0.04};
   d.planes.back().curve = "press";
   model::RigidSphere& bowl = d.spheres.emplace_back();

@@ -205,13 +205,15 @@ TEST(build_errors, vectors_without_direction_are_refused) {
   d.symmetry = {{"edge", {}, line_7}};
   expect_one(errors_of(d), {"symmetry plane has no direction"});
   d = good();
-  d.planes = {{"floor", {}, {0.0, std::numeric_limits<double>::quiet_NaN(), 0.0}, -1.0, line_7, {}, {}, ""}};
+  d.planes = {{{"floor"}, {}, {0.0, std::numeric_limits<double>::quiet_NaN(), 0.0}}};
+  d.planes[0].place = line_7;
   expect_one(errors_of(d), {"plane \"floor\" has no direction"});
 }
 
 TEST(build_errors, walls_that_move_in_no_way_that_can_be_are_refused) {
   Description d = good();
-  d.cylinders.push_back({"roll", {}, {}, 1.0, false, -1.0, line_7, {}, {}, ""});
+  d.cylinders.push_back({{"roll"}, {}, {}, 1.0});
+  d.cylinders[0].place = line_7;
   expect_one(errors_of(d), {"axis of cylinder \"roll\" has no direction"});
   d.cylinders[0].axis = {1.0, 0.0, 0.0};
   EXPECT_TRUE(errors_of(d).empty());
@@ -227,7 +229,8 @@ TEST(build_errors, walls_that_move_in_no_way_that_can_be_are_refused) {
   d.cylinders[0].displacement = {};
   expect_one(errors_of(d), {"cylinder \"roll\" names a curve and does not move"});
   d.cylinders[0].curve.clear();
-  d.spheres.push_back({"roll", {}, 1.0, false, -1.0, line_7, {}, {}, ""});
+  d.spheres.push_back({{"roll"}, {}, 1.0});
+  d.spheres[0].place = line_7;
   expect_one(errors_of(d), {"\"roll\" is already that of another wall"});
 }
 
@@ -270,6 +273,68 @@ TEST(build_errors, unknown_degrees_of_freedom_are_refused) {
   d = good();
   d.prescribed = {{"edge", "", 1.0, "", line_7}};
   expect_one(errors_of(d), {"no degree of freedom"});
+}
+
+TEST(build_errors, settings_of_pairs_that_cannot_be_are_refused) {
+  Description d = good();
+  ContactPair pair;
+  pair.bodies = {"plate", "ball"};
+  pair.place = line_7;
+  d.contact.pairs = {pair};
+  expect_one(errors_of(d), {"contact.pairs: nothing is set for \"plate\" and \"ball\""});
+  d.contact.pairs[0].friction = 0.0;
+  EXPECT_TRUE(errors_of(d).empty());
+  d.contact.pairs[0].bodies[1] = "bell";
+  expect_one(errors_of(d), {"contact.pairs names body \"bell\"", "plate, ball"});
+  d.contact.pairs[0].bodies[1] = "ball";
+  d.contact.pairs[0].penalty_scale = 2.0;
+  EXPECT_TRUE(errors_of(d).empty());
+  d.contact.stiffness = 5.0;
+  expect_one(errors_of(d), {"have a penalty_scale besides contact's stiffness"});
+  d.contact.stiffness = -1.0;
+  d.contact.pairs[0].stiffness = 5.0;
+  expect_one(errors_of(d), {"have a penalty_scale besides a stiffness"});
+  d.contact.pairs[0].penalty_scale.reset();
+  EXPECT_TRUE(errors_of(d).empty());
+}
+
+TEST(build_errors, a_pair_is_set_once) {
+  Description d = good();
+  d.bodies[1].array = Array{{2, 1, 1}, {5.0, 0.0, 0.0}};
+  ContactPair pair;
+  pair.bodies = {"plate", "ball"};
+  pair.friction = 0.1;
+  pair.place = {"deck.toml", 3, 1};
+  d.contact.pairs = {pair, pair};
+  d.contact.pairs[1].place = line_7;
+  const std::vector<std::string> twice{"are set already, by the pair of \"plate\" and \"ball\""};
+  expect_one(errors_of(d), twice);
+  d.contact.pairs[1].bodies = {"ball", "plate"};
+  expect_one(errors_of(d), twice);
+  d.contact.pairs[1].bodies = {"ball[1,0,0]", "plate"};
+  expect_one(errors_of(d), twice);
+  d.contact.pairs[1].bodies = {"ball", "ball[0,0,0]"};
+  EXPECT_TRUE(errors_of(d).empty());
+  d.contact.pairs[0].bodies = {"ball", "ball"};
+  expect_one(errors_of(d), {"are set already, by the pair of \"ball\" and \"ball\""});
+  d.contact.pairs[1].bodies = {"plate", "plate"};
+  EXPECT_TRUE(errors_of(d).empty());
+}
+
+TEST(build_errors, a_penalty_that_is_given_and_its_stiffness_come_together) {
+  Description d = good();
+  d.contact.place = line_7;
+  d.contact.penalty = "given";
+  expect_one(errors_of(d), {"contact.penalty is \"given\", and no stiffness is"});
+  d.contact.stiffness = 5.0;
+  EXPECT_TRUE(errors_of(d).empty());
+  for (const char* other : {"step", "element"}) {
+    d.contact.penalty = other;
+    d.contact.stiffness = 5.0;
+    expect_one(errors_of(d), {other, "and a stiffness is given"});
+    d.contact.stiffness = -1.0;
+    EXPECT_TRUE(errors_of(d).empty());
+  }
 }
 
 TEST(build_errors, unknown_sets_curves_bodies_and_groups_are_named_with_the_known_ones) {

@@ -333,7 +333,7 @@ TEST(build_model, is_the_same_for_any_number_of_threads) {
 
 TEST(build_model, planes_get_unit_normals) {
   Description d = one_body(CubedSphere{1.0, 2});
-  d.planes.push_back({"floor", {}, {0.0, 0.0, 4.0}, -1.0, {}, {}, {}, ""});
+  d.planes.push_back({{"floor"}, {}, {0.0, 0.0, 4.0}});
   EXPECT_EQ(build(d).walls[0].direction, (Vec3d{0.0, 0.0, 1.0}));
 }
 

@@ -209,6 +209,50 @@ TEST(deck, a_model_is_built_of_it) {
   EXPECT_EQ(model.element_count(), 12 * 9 + 6 * 4 * 5 * 8);
 }
 
+TEST(deck, settings_of_walls_and_of_pairs_in_contact_are_read) {
+  const Deck deck = parse_well(R"([run]
+duration = 1
+[[body]]
+name = "a"
+mesh = { kind = "cubed_sphere", radius = 1 }
+[[plane]]
+name = "floor"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+friction = 0.25
+damping = 1
+[[plane]]
+name = "ceiling"
+point = [0, 0, 9]
+normal = [0, 0, -1]
+[contact]
+penalty = "element"
+[[contact.pairs]]
+bodies = ["a", "a"]
+friction = 0.5
+[[contact.pairs]]
+bodies = ["a", "b"]
+damping = 0.125
+penalty_scale = 3
+stiffness = 7
+)");
+  const model::Description& d = deck.description;
+  EXPECT_EQ(d.planes.at(0).friction, 0.25);
+  EXPECT_EQ(d.planes.at(0).damping, 1.0);
+  EXPECT_FALSE(d.planes.at(1).friction.has_value());
+  EXPECT_FALSE(d.planes.at(1).damping.has_value());
+  EXPECT_EQ(d.contact.penalty, "element");
+  ASSERT_EQ(d.contact.pairs.size(), 2U);
+  EXPECT_EQ(d.contact.pairs[0].bodies, (std::array<std::string, 2>{"a", "a"}));
+  EXPECT_EQ(d.contact.pairs[0].friction, 0.5);
+  EXPECT_FALSE(d.contact.pairs[0].damping.has_value());
+  EXPECT_EQ(d.contact.pairs[0].place.line, 18);
+  EXPECT_FALSE(d.contact.pairs[1].friction.has_value());
+  EXPECT_EQ(d.contact.pairs[1].damping, 0.125);
+  EXPECT_EQ(d.contact.pairs[1].penalty_scale, 3.0);
+  EXPECT_EQ(d.contact.pairs[1].stiffness, 7.0);
+}
+
 TEST(deck, walls_and_contact_are_read) {
   const model::Description d = parse_well(test::full_deck).description;
   ASSERT_EQ(d.planes.size(), 1U);

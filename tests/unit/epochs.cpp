@@ -37,7 +37,7 @@ model::Description runaway(bool contact) {
   d.gravity.push_back({{-3000.0, 500.0, 800.0}, "push", {}});
   d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
   d.pressure.push_back({{"wild"}, "", 400.0, "push", {}});
-  d.planes.push_back({"wall", {-0.1, 0.0, 0.0}, {1.0, 0.0, 0.0}, -1.0, {}, {}, {}, ""});
+  d.planes.push_back({{"wall"}, {-0.1, 0.0, 0.0}, {1.0, 0.0, 0.0}});
   test::add_box_set(d, "side", {1.9, -1.0, -1.0}, {2.4, 2.0, 2.0});
   test::add_box_set(d, "held", {0.9, 0.9, -0.1}, {1.1, 1.1, 0.1});
   d.symmetry.push_back({"side", {0.3, -0.5, 0.7}, {}});

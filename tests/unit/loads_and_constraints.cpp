@@ -69,7 +69,7 @@ std::vector<std::pair<std::string, std::function<void(model::Description&)>>> ou
        }},
       {"plane",
        [](model::Description& d) {
-         d.planes.push_back({"floor", {0.3, -0.2, 0.385}, {0.0, 0.6, 0.8}, -1.0, {}, {}, {}, ""});
+         d.planes.push_back({{"floor"}, {0.3, -0.2, 0.385}, {0.0, 0.6, 0.8}});
        }},
       {"damping", [](model::Description& d) { d.run.damping = 5.0; }},
       {"fixed",

@@ -32,6 +32,16 @@ Model two_plastic_plates() {
   return test::build(d);
 }
 
+/// The same on two walls with friction and one without.
+Model two_plates_on_walls() {
+  Description d = test::description(steel, 0.01);
+  test::add_body(d, "p", Plate{1.0, 1.0, 3, 3, "one"}).array = Array{{2, 1, 1}, {3.0, 0.0, 0.0}};
+  d.planes.push_back({{"a", -1.0, 0.1}, {}, {0.0, 0.0, 1.0}});
+  d.planes.push_back({{"b"}, {}, {0.0, 0.0, 1.0}});
+  d.planes.push_back({{"c", -1.0, 0.1}, {}, {0.0, 0.0, -1.0}});
+  return test::build(d);
+}
+
 /// Records of doubles alone as the doubles they are.
 template <class Records>
 double* numbers(Records& records) {
@@ -52,6 +62,7 @@ State random_state(const Model& model, unsigned seed) {
   fill(numbers(state.acceleration), 6 * state.acceleration.size());
   fill(state.history.data(), state.history.size());
   fill(state.layers.data(), state.layers.size());
+  fill(numbers(state.wall_drag), 3 * state.wall_drag.size());
   fill(numbers(state.ledger), 11 * state.ledger.size());
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     for (Index i = 0; i < 4; ++i) {
@@ -151,6 +162,30 @@ TEST(state_bytes, the_layout_is_the_documented_one) {
   EXPECT_EQ(number_at(sides + 16 + 33 + 9 + 8), s.sides[1][1].drag.y);
   EXPECT_EQ(std::to_integer<int>(bytes[sides + 16 + 4 * 33 + 8]), 1);
   EXPECT_EQ(number_at(bytes.size() - 88), s.ledger[1].external_work);
+}
+
+TEST(state_bytes, drag_of_walls_follows_the_accelerations_and_is_part_of_the_hash) {
+  const Model m = two_plates_on_walls();
+  State from = random_state(m, 6), to = random_state(m, 7);
+  ASSERT_EQ(from.wall_drag.size(), 32U * 2U);
+  const auto bytes = bytes_of(m, from, 1), other = bytes_of(m, to, 0);
+  ASSERT_EQ(bytes.size(), 16U * (15U + 6U) * 8U + 18U * 12U * 8U + 16U + 6U * 33U + 88U);
+  double value{};
+  std::memcpy(&value, bytes.data() + 16 * 15 * 8 + 6 * 8 + 3 * 8 + 8, sizeof(value));
+  EXPECT_EQ(value, from.wall_drag[2 * (16 + 1) + 1].y);
+  ASSERT_TRUE(read_body_bytes(m, bytes, 1, to));
+  EXPECT_EQ(bytes_of(m, to, 1), bytes);
+  EXPECT_EQ(bytes_of(m, to, 0), other);
+  State copied = random_state(m, 8);
+  copy_body(m, from, 1, copied);
+  EXPECT_EQ(bytes_of(m, copied, 1), bytes);
+  EXPECT_NE(copied.wall_drag[31], from.wall_drag[31]);
+  const std::uint64_t before = state_hash(m, from);
+  for (Vec3d& drag : from.wall_drag) {
+    drag.z = -drag.z;
+    EXPECT_NE(state_hash(m, from), before);
+    drag.z = -drag.z;
+  }
 }
 
 TEST(state_bytes, padding_lanes_do_not_reach_the_hash) {

@@ -93,7 +93,7 @@ model::Model mass_on_spring(double courant, double step_ratio, double& dt) {
   auto d = test::description({1000.0, 1.0e9, 0.0}, 0.01);
   d.gravity.push_back({{0, 0, -10.0}, "", {}});
   test::add_body(d, "triangle", p);
-  d.planes.push_back({"floor", {0, 0, 0}, {0, 0, 1}, 1.0, {}, {}, {}, ""});
+  d.planes.push_back({{"floor", 1.0}, {}, {0, 0, 1}});
   std::vector<model::Mesh> meshes{model::generate_mesh(p)};
   meshes[0].triangle.resize(1);
   meshes[0].part.resize(1);

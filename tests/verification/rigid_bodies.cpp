@@ -149,7 +149,7 @@ TEST(rigid_ball, bounces_off_a_plane_like_a_mass_off_a_spring) {
   ball.velocity = {0.0, 0.0, -1.0};
   ball.translate = {0.0, 0.0, 0.1051};
   const double stiffness = 2.0e6;
-  d.planes.push_back({"floor", {}, {0.0, 0.0, 1.0}, stiffness, {}, {}, {}, ""});
+  d.planes.push_back({{"floor", stiffness}, {}, {0.0, 0.0, 1.0}});
   const model::Model model = test::build(d);
   test::DirectRun run(model);
   const double frequency = std::sqrt(stiffness / 2.0), dt = 0.02 / frequency;

@@ -73,8 +73,25 @@ struct BodyLedger {
   double contact_energy{};       ///< Potential of the pairs that are booked to this body [force*length]
   double contact_dissipation{};  ///< What friction and damping of contact have taken (>= 0) [force*length], integrated
   double barrier_energy{};       ///< Potential of rigid walls [force*length]
+  double contact_work{};         ///< Of contact forces on this body [force*length], integrated
   Vec3d external_impulse{};      ///< Loads, walls, damping and constraints [force*time], integrated
   Vec3d external_angular_impulse{};  ///< The same about the origin [force*length*time], integrated
+};
+
+/// Books of the contact between two bodies, or of a body with itself. The lower one keeps them, or the other where that
+/// is a barrier. Works are those of the forces at both ends of a step over its way, half each, as central differences
+/// turn them into motion: what they and the potential do not account for is the error of contact in time.
+struct PairBook {
+  Index other{};        ///< The body that does not keep the books
+  double initial{};     ///< Potential when the run began [force*length]
+  double energy{};      ///< Potential at the last evaluated forces [force*length]
+  double dissipated{};  ///< By friction and damping [force*length], integrated
+  double work{};        ///< On the body that keeps the books [force*length], integrated
+  double work_other{};  ///< On the other one, or 0 where there is none [force*length], integrated
+
+  /// What has come from nowhere (> 0) or gone there [force*length].
+  [[nodiscard]] double open() const noexcept { return energy - initial + dissipated + work + work_other; }
+  friend bool operator==(const PairBook&, const PairBook&) = default;
 };
 
 /// The state at a step boundary: all that a restart or another machine needs.
@@ -91,6 +108,7 @@ struct State {
   std::vector<std::vector<EdgeSide>> edge_sides;  // [bodies]: sorted by (first, second); the first edge is the body's,
                                                   // or the second where the first is a barrier's
   std::vector<BodyLedger> ledger;                 // [bodies]
+  std::vector<std::vector<PairBook>> pair_books;  // [bodies]: sorted by the other body; none that are all zero
 };
 
 /// State at time zero: reference positions, initial velocities as far as fixed nodes and planes of symmetry allow, no

@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 
+#include "app/fault_report.hpp"
 #include "app/keeper.hpp"
 #include "app/penetrations.hpp"
 #include "app/placement_report.hpp"
@@ -32,15 +35,23 @@ void note_output_error(const io::OutputError& error, RunEnd& end) {
 }
 
 /// Says on stderr why a run was not completed, and what to do.
-ExitCode report_end(const RunEnd& end, std::int64_t frames, const io::RunDirectory& directory) {
+ExitCode report_end(const RunEnd& end, std::int64_t frames, const io::RunDirectory& directory,
+                    const std::string& history) {
   const std::string results = directory.results().string();
+  const char* const state =
+      end.fault.kind == cluster::FaultKind::not_finite ? "The last sound state" : "The state in which it stopped";
+  std::error_code error;
+  const std::string around = std::filesystem::exists(directory.fault(), error)
+                                 ? fmt::format("; what is around the fault, at the start of its epoch too, is in {}",
+                                               directory.fault().string())
+                                 : "";
   switch (end.reason) {
     case EndReason::completed:
     case EndReason::reform:
       return ExitCode::done;
     case EndReason::fault:
-      print_error(fmt::format("fexp: the run stopped: {}; cure: {}\nThe last sound state is the last frame of {}.\n",
-                              end.fault.message, end.fault.cure, results));
+      print_error(fmt::format("fexp: the run stopped: {}; cure: {}\n{}{} is the last frame of {}{}.\n",
+                              end.fault.message, end.fault.cure, history, state, results, around));
       return ExitCode::fault;
     case EndReason::interrupted:
       print_error(
@@ -136,7 +147,7 @@ ExitCode report(const Drive& run, const cluster::Simulation& simulation, const K
       print_out(text);
     }
   }
-  return report_end(end, frames, run.directory);
+  return report_end(end, frames, run.directory, history_text(loaded.model, end.fault, loaded.deck.units));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <functional>
 #include <system_error>
 
+#include "app/fault_report.hpp"
 #include "app/schedule.hpp"
 #include "io/atomic_file.hpp"
 #include "io/vtkhdf_reader.hpp"
@@ -63,6 +64,7 @@ RunOutput::RunOutput(const io::RunDirectory& directory, const Case& loaded, cons
   }
   std::error_code error;
   fs::remove(directory.summary(), error);
+  fs::remove(directory.fault(), error);
 }
 
 void RunOutput::log_resumed(const model::State& state) {
@@ -81,6 +83,10 @@ void RunOutput::epoch(const cluster::EpochReport& report) {
   if (report.rollbacks > 0) {
     log_.line(fmt::format("an epoch was put back and redone {} times, the last time with {} steps of {:.4g}",
                           report.rollbacks, report.steps, report.dt));
+  }
+  if (report.retried.kind != cluster::FaultKind::none) {
+    log_.line(fmt::format("{}: the epoch was put back and done again with half the step, {:.4g}",
+                          report.retried.message, report.dt));
   }
   if (std::chrono::steady_clock::now() - flushed_ >= flush_after) {
     flush();
@@ -118,6 +124,16 @@ void RunOutput::row(const cluster::Simulation& simulation, const cluster::EpochR
   if (simulation.state().step != row_step_) {
     row_step_ = simulation.state().step;
     histories_.write(simulation, report);
+  }
+}
+
+void RunOutput::fault(const cluster::Simulation& simulation, const cluster::Fault& fault) {
+  drain();
+  if (const std::string text = history_text(loaded_.model, fault, loaded_.deck.units); !text.empty()) {
+    log_.line(text.substr(0, text.size() - 1));
+  }
+  if (write_neighbourhood(directory_.fault(), simulation, fault)) {
+    log_.line(fmt::format("what is around the fault is in {}", directory_.fault().filename().string()));
   }
 }
 
@@ -182,7 +198,8 @@ std::vector<std::pair<std::string, std::string>> files_of(const io::RunDirectory
       {"results", directory.results().string()},   {"xdmf", directory.xdmf().string()},
       {"deck", directory.deck().string()},         {"inputs", directory.inputs().string()},
       {"versions", directory.versions().string()}, {"log", directory.log().string()},
-      {"summary", directory.summary().string()},   {"hashes", directory.hashes().string()}};
+      {"summary", directory.summary().string()},   {"hashes", directory.hashes().string()},
+      {"fault", directory.fault().string()}};
   for (const char* name : {"energies", "momenta", "steps", "planes", "nodes", "bodies"}) {
     files.emplace_back(name, directory.history(name).string());
   }

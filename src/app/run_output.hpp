@@ -48,6 +48,9 @@ class RunOutput {
   /// Writes rows of the present state; nothing when the last rows are of this step.
   void row(const cluster::Simulation& simulation, const cluster::EpochReport& report);
 
+  /// Writes fault.vtkhdf and, to the log, what led to the fault. The simulation has collected both its states.
+  void fault(const cluster::Simulation& simulation, const cluster::Fault& fault);
+
   /// Waits until all frames are in their files.
   void drain() { writer_.drain(); }
   /// Where the files stand; drains, and hands all of them to the operating system.

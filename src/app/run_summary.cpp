@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "app/fault_report.hpp"
 #include "app/penetrations.hpp"
 #include "app/placement_report.hpp"
 #include "app/progress.hpp"
@@ -23,24 +24,12 @@ void add_extremes(const cluster::RunExtremes& x, io::Summary& summary) {
   summary.step_largest = x.largest_dt;
   summary.epochs = x.epochs;
   summary.rollbacks = x.rollbacks;
+  summary.retries = x.retries;
   summary.islands_fewest = x.fewest_islands;
   summary.islands_most = x.most_islands;
   summary.contacts_most = x.most_active_pairs;
   summary.searches = x.searches;
   summary.deepest_penetration = x.deepest;
-}
-
-void add_fault(const model::Model& model, const cluster::Fault& fault, io::Summary& summary) {
-  if (fault.element != no_index) {
-    summary.fault.element = model.element_label[at(fault.element)];
-  }
-  if (fault.node != no_index) {
-    summary.fault.node = model.node_label[at(fault.node)];
-  }
-  if (fault.body != no_index) {
-    summary.fault.body = model.bodies[at(fault.body)].name;
-  }
-  summary.fault.cure = fault.cure;
 }
 
 std::string energies_text(const solve::Energies& a, const solve::Energies& b, const std::string& unit) {
@@ -111,7 +100,7 @@ io::Summary summarise(const Case& loaded, const cluster::Simulation& simulation,
   summary.placement = placement_of(simulation);
   summary.network = network_of(simulation);
   if (end.reason == EndReason::fault) {
-    add_fault(model, end.fault, summary);
+    summary.fault = place_of(model, end.fault);
   }
   return summary;
 }
@@ -142,6 +131,10 @@ std::string summary_text(const io::Summary& s, const io::UnitNames& units, const
                       p.y, p.z, units.of("force*time"), l.x, l.y, l.z, units.of("force*length*time"));
   text += fmt::format("  contact    at most {} pairs, deepest {:.1f} % of the contact distance, {} searches\n",
                       s.contacts_most, 100.0 * s.deepest_penetration, s.searches);
+  if (s.retries > 0) {
+    text += fmt::format("  retries    {} {} done again with half the step, see log.txt\n", s.retries,
+                        s.retries == 1 ? "epoch was" : "epochs were");
+  }
   if (present.deleted > 0) {
     text += fmt::format("  deleted    {} elements\n", present.deleted);
   }

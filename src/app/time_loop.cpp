@@ -78,6 +78,9 @@ class Loop {
       end_.reason = EndReason::fault;
       end_.fault = end_.last.fault;
       end_.message = end_.fault.message;
+      simulation.collect();
+      simulation.collect_epoch_start();
+      write([&] { output_->fault(simulation, end_.fault); });
       return false;
     }
     if (simulation.state().time == schedule_.next()) {

@@ -16,6 +16,17 @@ struct BodyNotice {
   solve::CriticalStep critical;  ///< Of its elements
   solve::Diagnostics diagnostics;
   RelaxationSums relaxation;  ///< Of a static analysis
+  double contact_work{};      ///< Of contact forces on it since the start [force*length]
+  /// Of the pairs that it keeps the books of the one that is off the most; `other` is no_index where it keeps none.
+  model::PairBook worst_pair{.other = no_index};
+  double pairs_off{};  ///< Sum of moduli of what all of these are off [force*length]
+
+  /// What the body has and has given away, less what was put in: constant in exact arithmetic and time, whatever other
+  /// bodies do. Contact counts by its work; that of walls is a potential of the body.
+  [[nodiscard]] double own_balance() const noexcept {
+    const solve::Energies& e = diagnostics.energies;
+    return e.kinetic + e.internal + e.barrier + e.damping - e.external - contact_work;
+  }
 };
 
 /// `before`: the state at the start of the epoch.

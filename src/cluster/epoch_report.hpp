@@ -37,12 +37,16 @@ struct EpochReport {
   Index islands{};
   Index largest_island_elements{};
   Index rollbacks{};     ///< Times the epoch was put back and redone
+  double end_time{};     ///< Where the last attempt was to end [time]
   Index active_pairs{};  ///< Contacts at the end
   Index candidates{};
   Index searches{};  ///< Contact searches during the epoch
   double deepest{};  ///< Deepest penetration over contact distance [-]
   Index deepest_node{no_index};
   Index deepest_element{no_index};
+  double contact_frequency2{};    ///< Bound of contact's and walls' share of omega^2 [1/time^2]
+  Index stiffest_node{no_index};  ///< Of the pair that has it, no_index for a wall
+  Index stiffest_element{no_index};
   solve::CriticalStep critical;    ///< Of the elements, at the end
   solve::Diagnostics diagnostics;  ///< At the end
   double energy_error{};           ///< Relative imbalance at the end [-]
@@ -50,6 +54,7 @@ struct EpochReport {
   double angular_momentum_error{};
   std::vector<solve::HashRecord> hashes;  ///< By step, then body; on rank 0 only.
   Fault fault;
+  Fault retried;      ///< Why the epoch was done again with half the step, if it was
   Requests requests;  ///< Of all ranks
 };
 
@@ -66,6 +71,7 @@ struct RunExtremes {
   double deepest{};
   std::int64_t epochs{};
   std::int64_t rollbacks{};
+  std::int64_t retries{};  ///< Epochs that were done again with half the step
   std::int64_t searches{};
 
   void add(const EpochReport& report);

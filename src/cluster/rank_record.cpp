@@ -14,6 +14,8 @@ void RankRecord::add(const solve::IslandReport& island) {
     one.broken_node = island.stop_node;
   }
   one.contact_frequency2 = island.contact_frequency2;
+  one.stiffest_node = island.stiffest_node;
+  one.stiffest_element = island.stiffest_element;
   one.active_pairs = island.active_pairs;
   one.candidates = island.candidates;
   one.searches = island.searches;
@@ -32,7 +34,12 @@ void RankRecord::add(const RankRecord& other) {
     broken_steps = other.broken_steps;
     broken_node = other.broken_node;
   }
-  contact_frequency2 = std::max(contact_frequency2, other.contact_frequency2);
+  if (contact_frequency2 < other.contact_frequency2 ||
+      (contact_frequency2 == other.contact_frequency2 && other.stiffest_node < stiffest_node)) {
+    contact_frequency2 = other.contact_frequency2;
+    stiffest_node = other.stiffest_node;
+    stiffest_element = other.stiffest_element;
+  }
   active_pairs += other.active_pairs;
   candidates += other.candidates;
   searches += other.searches;

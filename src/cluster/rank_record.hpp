@@ -17,6 +17,8 @@ struct RankRecord {
   Index broken_steps{};  ///< Good steps before the first velocity that is not finite
   Index broken_node{no_index};
   double contact_frequency2{};
+  Index stiffest_node{no_index};  ///< See IslandReport
+  Index stiffest_element{no_index};
   Index active_pairs{};
   Index candidates{};
   Index searches{};

@@ -5,6 +5,8 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <tuple>
+#include <utility>
 
 #include "base/hash.hpp"
 #include "base/process_threads.hpp"
@@ -65,7 +67,8 @@ Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, Wo
       owner_(model.bodies.size(), no_machine),
       arrived_(model.bodies.size(), true),
       loads_end_(model.run.is_static() ? end_of_curves(model) : 0.0),
-      sudden_energy_(solve::sudden_load_energy(model, state_, model.run.safety * model.first_critical_step)) {
+      sudden_energy_(solve::sudden_load_energy(model, state_, model.run.safety * model.first_critical_step)),
+      watchdog_(model.bodies.size()) {
   parallel::for_each(model_.body_count(), 1, [&](Index b) {
     if (model_.bodies[at(b)].barrier) {
       notices_[at(b)] = notice_of(model_, state_, state_, b);
@@ -127,7 +130,8 @@ solve::Diagnostics Simulation::sum_of_diagnostics() const {
 /// Step and number of steps towards the target, which may be infinite, and how far the bodies may move meanwhile.
 void Simulation::plan(double target, Attempt& attempt) const {
   const double frequency2 = attempt.element_frequency2 + attempt.contact_frequency2;
-  const double largest = model_.run.safety * 2.0 / std::sqrt(frequency2);
+  const double part = state_.time < half_until_ ? 0.5 : 1.0;
+  const double largest = part * model_.run.safety * 2.0 / std::sqrt(frequency2);
   const double left = target - state_.time;
   const double needed = std::ceil(left / largest);
   const bool reaches_target = needed <= static_cast<double>(attempt.most_steps);
@@ -210,13 +214,50 @@ void Simulation::put_back() {
 
 EpochReport Simulation::run_epoch(double target, std::int64_t hash_every, const Requests& requests) {
   EpochReport report;
+  start_notices_ = notices_;
+  backup_.step = state_.step;
+  backup_.time = state_.time;
+  const std::tuple before(critical_, contact_frequency2_, energy_scale_, linear_scale_, angular_scale_, relaxation_);
+  step_before_ = 2.0 / std::sqrt(frequency2(critical_) + contact_frequency2_);
+  attempt_epoch(target, hash_every, requests, report);
+  if (report.fault.kind != FaultKind::none) {
+    describe(report);
+    if (is_curable(report)) {
+      const EpochReport failed = std::exchange(report, {});
+      state_.step = backup_.step;
+      state_.time = backup_.time;
+      put_back();
+      if (failed.steps > 0) {
+        watchdog_.take_back();
+      }
+      std::tie(critical_, contact_frequency2_, energy_scale_, linear_scale_, angular_scale_, relaxation_) = before;
+      half_until_ = failed.end_time;
+      report.retried = failed.fault;
+      report.rollbacks = failed.rollbacks + 1;
+      attempt_epoch(target, hash_every, requests, report);
+      if (report.fault.kind != FaultKind::none) {
+        describe(report);
+      }
+    }
+  }
+  if (hash_every > 0) {
+    share_hashes(report);
+  }
+  extremes_.add(report);
+  ++load_.epochs;
+  return report;
+}
+
+/// One epoch, with as many roll-backs as the guard asks for, and its fault without words.
+void Simulation::attempt_epoch(double target, std::int64_t hash_every, const Requests& requests, EpochReport& report) {
   Attempt attempt;
-  attempt.most_steps = model_.run.epoch_steps;
+  // Of half steps twice as many, so that they lead as far.
+  attempt.most_steps = state_.time < half_until_ ? 2 * model_.run.epoch_steps : model_.run.epoch_steps;
   attempt.contact_frequency2 = contact_frequency2_;
   attempt.element_frequency2 = frequency2(critical_);
-  start_notices_ = notices_;
   for (int tries = 0;; ++tries) {
     plan(target, attempt);
+    report.end_time = attempt.end_time;
     form_islands(attempt);
     const RankRecord record = advance_islands(attempt, hash_every, requests, report);
     report.requests = record.requests;
@@ -238,14 +279,9 @@ EpochReport Simulation::run_epoch(double target, std::int64_t hash_every, const 
       break;
     }
   }
-  if (hash_every > 0) {
-    share_hashes(report);
-  }
   report.islands = static_cast<Index>(islands_.size());
   report.critical = critical_;
   judge(report);
-  ++load_.epochs;
-  return report;
 }
 
 /// Decides from global data whether an attempt stands; otherwise lowers what has to be lowered for the next one.
@@ -259,15 +295,18 @@ Simulation::Verdict Simulation::guard(Attempt& attempt, const RankRecord& record
   if (record.broken_node != no_index) {
     // The steps up to the one that failed are redone, so that the results end with the last sound state.
     if (fault.kind == FaultKind::none) {
-      fault = not_finite_fault(record);
+      fault.kind = FaultKind::not_finite;
+      fault.node = record.broken_node;
+      fault.step = state_.step + record.broken_steps + 1;
     }
     attempt.most_steps = std::min(attempt.steps, record.good_steps);
-    return attempt.most_steps == 0 ? Verdict::give_up : Verdict::redo;
+    return may_halve() || attempt.most_steps == 0 ? Verdict::give_up : Verdict::redo;
   }
   const solve::CriticalStep critical = smallest_critical_step();
   const double element2 = frequency2(critical), contact2 = record.contact_frequency2;
   const double allowed = 2.0 * (1.0 - (1.0 - margin_used) * (1.0 - model_.run.safety));
-  const bool collapsed = !(critical.step > model_.run.step_collapse * model_.first_critical_step);
+  const bool collapsed =
+      !(2.0 / std::sqrt(element2 + contact2) > model_.run.step_collapse * model_.first_critical_step);
   const bool stable =
       attempt.dt * std::sqrt(element2 + contact2) <= std::max(allowed, rounding * 2.0 * model_.run.safety);
   if (!stable && !collapsed && may_retry) {
@@ -278,7 +317,7 @@ Simulation::Verdict Simulation::guard(Attempt& attempt, const RankRecord& record
   critical_ = critical;
   contact_frequency2_ = contact2;
   if ((collapsed || !stable) && fault.kind == FaultKind::none) {
-    fault = collapsed_fault();
+    fault.kind = collapsed ? FaultKind::step_collapsed : FaultKind::step_not_found;
   }
   return Verdict::accept;
 }
@@ -302,6 +341,9 @@ void Simulation::gather(const RankRecord& record, EpochReport& report) const {
   report.deepest = record.deepest;
   report.deepest_node = record.deepest_node;
   report.deepest_element = record.deepest_element;
+  report.contact_frequency2 = record.contact_frequency2;
+  report.stiffest_node = record.stiffest_node;
+  report.stiffest_element = record.stiffest_element;
   for (const Island& island : islands_) {
     Index elements = 0;
     for (const Index body : island.bodies) {
@@ -331,9 +373,11 @@ void Simulation::judge(EpochReport& report) {
   report.angular_momentum_error =
       relative(norm(m.angular - start_.momenta.angular - m.external_angular_impulse), angular_scale_);
   if (report.fault.kind == FaultKind::none && !(report.energy_error <= model_.run.energy_drift_limit)) {
-    report.fault = energy_fault(report);
+    report.fault.kind = FaultKind::energy_drift;
   }
-  extremes_.add(report);
+  if (report.steps > 0) {
+    watchdog_.add({state_.step, state_.time, report.dt, report.energy_error}, start_notices_, notices_);
+  }
 }
 
 void RunExtremes::add(const EpochReport& report) {
@@ -350,6 +394,7 @@ void RunExtremes::add(const EpochReport& report) {
   deepest = std::max(deepest, report.deepest);
   searches += report.searches;
   rollbacks += report.rollbacks;
+  retries += report.retried.kind != FaultKind::none ? 1 : 0;
   ++epochs;
 }
 

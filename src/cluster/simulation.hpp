@@ -15,6 +15,7 @@
 #include "cluster/placement.hpp"
 #include "cluster/placement_ledger.hpp"
 #include "cluster/rank_record.hpp"
+#include "cluster/watchdog.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
 #include "solve/diagnostics.hpp"
@@ -72,6 +73,7 @@ class Simulation {
   [[nodiscard]] const solve::Diagnostics& start() const noexcept { return start_; }
   /// How far a static analysis has come.
   [[nodiscard]] const Relaxation& relaxation() const noexcept { return relaxation_; }
+  [[nodiscard]] const Watchdog& watchdog() const noexcept { return watchdog_; }
   /// Diagnostics, errors and contact counts of the present state.
   [[nodiscard]] EpochReport present() const;
   /// Island of each body (barriers: no_index), shape [bodies].
@@ -80,6 +82,10 @@ class Simulation {
   /// Brings the states and contact forces of bodies to rank 0, ascending; without a list those of all bodies.
   void collect(std::span<const Index> bodies);
   void collect();
+  /// The state at the start of the last epoch: the bodies of this machine, and on rank 0 all of them after
+  /// collect_epoch_start().
+  [[nodiscard]] const model::State& epoch_start() const noexcept { return backup_; }
+  void collect_epoch_start();
 
   [[nodiscard]] const World& world() const noexcept { return world_; }
   [[nodiscard]] int rank() const noexcept { return world_.communicator->rank(); }
@@ -103,6 +109,7 @@ class Simulation {
 
   enum class Verdict { accept, redo, give_up };
 
+  void attempt_epoch(double target, std::int64_t hash_every, const Requests& requests, EpochReport& report);
   void plan(double target, Attempt& attempt) const;
   void form_islands(const Attempt& attempt);
   void place(const std::vector<Island>& islands);
@@ -133,9 +140,13 @@ class Simulation {
   [[nodiscard]] solve::CriticalStep smallest_critical_step() const;
   [[nodiscard]] solve::Diagnostics sum_of_diagnostics() const;
   [[nodiscard]] static std::vector<double> elements_of(const model::Model& model);
-  [[nodiscard]] Fault not_finite_fault(const RankRecord& record) const;
-  [[nodiscard]] Fault collapsed_fault() const;
-  [[nodiscard]] Fault energy_fault(const EpochReport& report);
+  [[nodiscard]] bool may_halve() const;
+  [[nodiscard]] bool is_curable(const EpochReport& report) const;
+  void describe(EpochReport& report);
+  void describe_break(Fault& fault) const;
+  void describe_collapse(const EpochReport& report, Fault& fault) const;
+  void describe_drift(const EpochReport& report, Fault& fault) const;
+  void add_history(Fault& fault) const;
 
   const model::Model& model_;
   std::uint64_t fingerprint_;  ///< Of the model, in snapshots
@@ -167,6 +178,9 @@ class Simulation {
   Relaxation relaxation_;   // Of a static analysis
   double linear_scale_{};
   double angular_scale_{};
+  double step_before_{};          // Critical step of elements and contact together at the epoch's start [time]
+  double half_until_{-HUGE_VAL};  // Epochs that begin before this time take half the step [time]
+  Watchdog watchdog_;
   RunExtremes extremes_;
 };
 

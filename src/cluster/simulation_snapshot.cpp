@@ -11,7 +11,7 @@ namespace fexp::cluster {
 
 namespace {
 
-constexpr std::uint64_t format_version = 2;
+constexpr std::uint64_t format_version = 3;
 
 /// Step and time stand first in what is packed of a run.
 bool same_moment(std::span<const std::byte> a, std::span<const std::byte> b) {
@@ -34,6 +34,8 @@ void Simulation::pack_run(ByteWriter& out) const {
   out.value(linear_scale_);
   out.value(angular_scale_);
   out.value(extremes_);
+  out.value(half_until_);
+  watchdog_.pack(out);
   out.value(static_cast<std::uint64_t>(world_.machines.size()));
   for (const Machine& machine : world_.machines) {
     out.text(machine.name);
@@ -71,6 +73,8 @@ void Simulation::unpack_run(ByteReader& in) {
   linear_scale_ = in.value<double>();
   angular_scale_ = in.value<double>();
   extremes_ = in.value<RunExtremes>();
+  half_until_ = in.value<double>();
+  const bool fits = watchdog_.unpack(in);
   std::vector<Machine> known(static_cast<std::size_t>(std::min<std::uint64_t>(in.value<std::uint64_t>(), 1U << 20U)));
   for (Machine& machine : known) {
     machine.name = in.text();
@@ -81,7 +85,7 @@ void Simulation::unpack_run(ByteReader& in) {
   owner_ = in.list<MachineIndex>();
   const std::vector<Index> island_of_body = in.list<Index>();
   ledger_ = PlacementLedger::unpack(in);
-  if (!in.sound() || owner_.size() != model_.bodies.size() || island_of_body.size() != model_.bodies.size()) {
+  if (!in.sound() || !fits || owner_.size() != model_.bodies.size() || island_of_body.size() != model_.bodies.size()) {
     refuse("it ends too early");
   }
   adopt_machines(known);

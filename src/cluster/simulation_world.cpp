@@ -156,6 +156,8 @@ void Simulation::take_up_solvers(std::vector<Island> islands) {
     solvers_[i]->assign(model_, workspace_.patches, state_, islands_[i].bodies, islands_[i].barriers);
     if (std::ranges::any_of(islands_[i].bodies, [&](Index body) { return arrived_[at(body)]; })) {
       solvers_[i]->evaluate(model_, state_, workspace_);
+    } else {
+      solvers_[i]->recall(model_, state_);
     }
   });
   arrived_.assign(model_.bodies.size(), false);
@@ -293,6 +295,18 @@ void Simulation::collect() {
     all[b] = static_cast<Index>(b);
   }
   collect(all);
+}
+
+void Simulation::collect_epoch_start() {
+  std::vector<Shipment> shipments;
+  for (Index body = 0; body < model_.body_count(); ++body) {
+    if (const int from = rank_of(body); from > 0) {
+      shipments.push_back({body, from, 0});
+    }
+  }
+  if (!shipments.empty()) {
+    ship_bodies(*world_.communicator, model_, shipments, backup_);
+  }
 }
 
 /// What was said while the world was set up does not count.

@@ -44,6 +44,7 @@ void IslandContact::assign(const model::Model& model, std::span<const Index> bod
   candidates_ = {};
   report_ = {};
   searched_ = false;
+  books_.assign(state, bodies);
   enabled_ = model.contact.enabled && (bodies.size() + barriers.size() > 1 || model.can_touch(bodies[0], bodies[0]));
   with_edges_ = enabled_ && model.contact.edges;
   if (!enabled_) {
@@ -188,13 +189,7 @@ void IslandContact::look(const model::Model& model, const Positions& now, const 
   piece.memory.swap(piece.next_memory);
 }
 
-ContactReport IslandContact::evaluate(const model::Model& model, const model::State& state, double dt,
-                                      NodeContact& nodes, BodyContact* bodies) {
-  if (!enabled_) {
-    return report_;
-  }
-  const bool still = dt == 0.0;
-  const Positions now = positions(model, state, 0.0, still), before = positions(model, state, dt, still);
+void IslandContact::look(const model::Model& model, const Positions& now, const Positions& before) {
   if (!searched_) {
     search_all(model, now);
   }
@@ -203,6 +198,24 @@ ContactReport IslandContact::evaluate(const model::Model& model, const model::St
   }
   parallel::for_each(static_cast<Index>(pieces_.size()), piece_grain,
                      [&](Index i) { look(model, now, before, pieces_[at(i)]); });
+}
+
+void IslandContact::recall(const model::Model& model, const model::State& state) {
+  if (enabled_) {
+    const Positions now = positions(model, state, 0.0, true);
+    look(model, now, now);
+  }
+}
+
+ContactReport IslandContact::evaluate(const model::Model& model, const model::State& state, double dt,
+                                      NodeContact& nodes, BodyContact* bodies) {
+  if (!enabled_) {
+    return report_;
+  }
+  const bool still = dt == 0.0;
+  const Positions now = positions(model, state, 0.0, still), before = positions(model, state, dt, still);
+  look(model, now, before);
+  books_.open(still);
   report_.active_pairs = 0;
   report_.deepest = 0.0;
   report_.deepest_node = no_index;
@@ -215,24 +228,85 @@ ContactReport IslandContact::evaluate(const model::Model& model, const model::St
   if (with_edges_) {
     edges_.for_each_active([&](const ActiveEdges& pair) { add(model, now, pair, nodes, bodies); });
   }
-  report_.max_stiffness_over_mass = 0.0;
-  const auto look_at = [&](Index n) {
-    report_.max_stiffness_over_mass =
-        std::max(report_.max_stiffness_over_mass, 2.0 * nodes.stiffness[at(n)] / model.mass[at(n)]);
+  books_.close();
+  if (!still) {
+    book_half_work(model, state, dt, bodies);
+  }
+  find_stiffest(model, nodes);
+  return report_;
+}
+
+/// The bound of contact's frequency, and the first pair that has it.
+void IslandContact::find_stiffest(const model::Model& model, const NodeContact& nodes) {
+  double largest = 0.0;
+  const auto exceeds = [&](Index n) {
+    const double share = 2.0 * nodes.stiffness[at(n)] / model.mass[at(n)];
+    const bool more = largest < share;
+    largest = more ? share : largest;
+    return more;
   };
+  report_.stiffest_node = no_index;
+  report_.stiffest_element = no_index;
   for (const Piece& piece : pieces_) {
     for (const ActivePair& pair : piece.active) {
-      look_at(pair.node);
-      std::ranges::for_each(model.triangle[at(pair.element)], look_at);
+      const auto& t = model.triangle[at(pair.element)];
+      // All are looked at, whichever exceeds.
+      const std::array<bool, 4> more{exceeds(pair.node), exceeds(t[0]), exceeds(t[1]), exceeds(t[2])};
+      if (more[0] || more[1] || more[2] || more[3]) {
+        report_.stiffest_node = pair.node;
+        report_.stiffest_element = pair.element;
+      }
     }
   }
   if (with_edges_) {
     edges_.for_each_active([&](const ActiveEdges& pair) {
-      std::ranges::for_each(ends_of(model, pair.first), look_at);
-      std::ranges::for_each(ends_of(model, pair.second), look_at);
+      const std::array<Index, 2> first = ends_of(model, pair.first), second = ends_of(model, pair.second);
+      const std::array<bool, 4> more{exceeds(first[0]), exceeds(first[1]), exceeds(second[0]), exceeds(second[1])};
+      if (more[0] || more[1] || more[2] || more[3]) {
+        report_.stiffest_node = second[0];
+        report_.stiffest_element = pair.first / 3;
+      }
     });
   }
-  return report_;
+  report_.max_stiffness_over_mass = largest;
+}
+
+/// Barriers do not move.
+void IslandContact::book_half_work(const model::Model& model, const model::State& state, double dt,
+                                   BodyContact* bodies) {
+  const double half_dt = 0.5 * dt;
+  const model::NodeMotion* const motion = state.motion.data();
+  const auto power = [motion](const Vec3d& force, Index n) { return dot(force, motion[n].velocity); };
+  const auto book = [&](Index a, Index b, double on_a, double on_b) {
+    books_.add_work(model, a, b, half_dt * on_a, half_dt * on_b);
+    if (!model.bodies[at(a)].barrier) {
+      bodies[a].work += half_dt * on_a;
+    }
+    if (!model.bodies[at(b)].barrier) {
+      bodies[b].work += half_dt * on_b;
+    }
+  };
+  for (const Piece& piece : pieces_) {
+    for (const ActivePair& pair : piece.active) {
+      const auto& t = model.triangle[at(pair.element)];
+      const Vec3d surface = pair.weight[0] * motion[t[0]].velocity + pair.weight[1] * motion[t[1]].velocity +
+                            pair.weight[2] * motion[t[2]].velocity;
+      book(model.node_body[at(pair.node)], body_of_element(model, pair.element), power(pair.force, pair.node),
+           -dot(pair.force, surface));
+    }
+  }
+  if (with_edges_) {
+    edges_.for_each_active([&](const ActiveEdges& pair) {
+      const std::array<Index, 2> first = ends_of(model, pair.first), second = ends_of(model, pair.second);
+      const Index a = model.node_body[at(first[0])], b = model.node_body[at(second[0])];
+      double on_a = power(pair.force[0], first[0]) + power(pair.force[1], first[1]);
+      double on_b = power(pair.force[2], second[0]) + power(pair.force[3], second[1]);
+      if (pair.corner != no_index) {
+        (model.node_body[at(pair.corner)] == a ? on_a : on_b) += power(pair.corner_force, pair.corner);
+      }
+      book(a, b, on_a, on_b);
+    });
+  }
 }
 
 void IslandContact::count(double stiffness, double depth, Index node, Index element) {
@@ -256,6 +330,7 @@ void IslandContact::add(const model::Model& model, const Positions& x, const Act
   BodyContact& body = bodies[owner(model, pair.node, pair.element)];
   body.energy += pair.energy;
   body.dissipated += pair.dissipated;
+  books_.add(model, model.node_body[at(pair.node)], body_of_element(model, pair.element), pair.energy, pair.dissipated);
   if (!barrier_node) {
     nodes.force[at(pair.node)] += pair.force;
     nodes.stiffness[at(pair.node)] += pair.stiffness;
@@ -286,6 +361,7 @@ void IslandContact::add(const model::Model& model, const Positions& x, const Act
   BodyContact& body = bodies[owner(model, first[0], pair.second / 3)];
   body.energy += pair.energy;
   body.dissipated += pair.dissipated;
+  books_.add(model, model.node_body[at(first[0])], model.node_body[at(second[0])], pair.energy, pair.dissipated);
   const auto is_barrier = [&](Index n) { return model.bodies[at(model.node_body[at(n)])].barrier; };
   const bool with_barrier = is_barrier(first[0]) || is_barrier(second[0]);
   const auto act = [&](Index n, const Vec3d& force, double weight) {

@@ -9,6 +9,7 @@
 #include "contact/candidates.hpp"
 #include "contact/edge_contact.hpp"
 #include "contact/node_watch.hpp"
+#include "contact/pair_books.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
 
@@ -18,6 +19,7 @@ namespace fexp::contact {
 struct BodyContact {
   double energy{};       ///< Potential of the pairs booked to the body [force*length]
   double dissipated{};   ///< What these have dissipated in the step [force*length]
+  double work{};         ///< Of all contact forces on the body in the step [force*length]
   Vec3d barrier_force;   ///< Force of barriers on the body [force]
   Vec3d barrier_moment;  ///< The same about the origin [force*length]
 };
@@ -36,6 +38,8 @@ struct ContactReport {
   Index deepest_node{no_index};
   Index deepest_element{no_index};
   double max_stiffness_over_mass{};  ///< Bound of contact's share of omega^2 [1/time^2]
+  Index stiffest_node{no_index};     ///< Of the pair that has it, an end where edges touch
+  Index stiffest_element{no_index};
 };
 
 /// Contact inside one island: of its bodies with each other, with themselves and with the barriers near them. A pair
@@ -47,16 +51,26 @@ class IslandContact {
   void assign(const model::Model& model, std::span<const Index> bodies, std::span<const Index> barriers,
               const model::State& state);
 
+  /// Books the work of the present forces over half the way of a step, of which the state has the velocities: to be
+  /// called when nodes have moved, before `advance`. With its new forces `evaluate` books the other half.
+  void book_half_work(const model::Model& model, const model::State& state, double dt, BodyContact* bodies);
+
   /// To be called when nodes have moved, none by more than `largest_way` [length]. Searches when that is needed.
   void advance(const model::Model& model, const model::State& state, double largest_way);
 
-  /// Forces at the present positions, added to those in `nodes`; sums per body in `bodies`, shape [bodies of the
-  /// model]. `dt`: the step that has led here; 0 where nothing has moved.
+  /// Forces at the present positions, added to those in `nodes`; sums per body, added to those in `bodies`, shape
+  /// [bodies of the model]. `dt`: the step that has led here; 0 where nothing has moved.
   ContactReport evaluate(const model::Model& model, const model::State& state, double dt, NodeContact& nodes,
                          BodyContact* bodies);
 
+  /// Evaluates the forces of a state that an island with other bodies has left, without writing them anywhere: their
+  /// work in the first half of the next step is booked pair by pair.
+  void recall(const model::Model& model, const model::State& state);
+
   /// Writes the remembered sides of all pairs to the state of the bodies they belong to.
   void store_sides(const model::Model& model, model::State& state) const;
+  /// Likewise the books.
+  void store_books(model::State& state) const { books_.store(bodies_, state); }
 
  private:
   /// Consecutive rows of candidates: the unit of parallel work. All lists ascend by (node, element).
@@ -72,11 +86,13 @@ class IslandContact {
   void search_worn(const model::Model& model, const Positions& x);
   void search(const model::Model& model, const Positions& x);
   void cut_into_pieces(const std::vector<model::ContactSide>& memory);
+  void look(const model::Model& model, const Positions& now, const Positions& before);
   void look(const model::Model& model, const Positions& now, const Positions& before, Piece& piece) const;
   void add(const model::Model& model, const Positions& x, const ActivePair& pair, NodeContact& nodes,
            BodyContact* bodies);
   void add(const model::Model& model, const Positions& x, const ActiveEdges& pair, NodeContact& nodes,
            BodyContact* bodies);
+  void find_stiffest(const model::Model& model, const NodeContact& nodes);
   void count(double stiffness, double depth, Index node, Index element);
   [[nodiscard]] std::vector<model::ContactSide> all_sides() const;
   [[nodiscard]] static Index owner(const model::Model& model, Index node, Index element);
@@ -87,6 +103,7 @@ class IslandContact {
   Candidates candidates_;
   EdgeContact edges_;
   std::vector<Piece> pieces_;
+  PairBooks books_;
   std::vector<Index> bodies_;
   double skin_{};
   double margin_{};       ///< More, up to which blocks are partners [length]

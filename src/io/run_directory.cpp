@@ -51,7 +51,7 @@ void clear_earlier_run(const RunDirectory& run) {
   std::error_code error;
   const bool is_run = fs::exists(run.versions(), error);
   for (const fs::path& path : {run.deck(), run.results(), run.xdmf(), run.log(), run.summary(), run.versions(),
-                               run.inputs(), run.taken_up()}) {
+                               run.inputs(), run.taken_up(), run.fault()}) {
     fs::remove(path, error);
   }
   CheckpointFiles(run.checkpoints()).clear();

@@ -36,6 +36,8 @@ class RunDirectory {
   [[nodiscard]] std::filesystem::path results() const { return path_ / results_name; }
   /// Version 2 of XDMF, whose extension makes ParaView take the reader that understands it.
   [[nodiscard]] std::filesystem::path xdmf() const { return path_ / "results.xdmf2"; }
+  /// The neighbourhood of a fault.
+  [[nodiscard]] std::filesystem::path fault() const { return path_ / "fault.vtkhdf"; }
   [[nodiscard]] std::filesystem::path log() const { return path_ / "log.txt"; }
   [[nodiscard]] std::filesystem::path summary() const { return path_ / "summary.json"; }
   [[nodiscard]] std::filesystem::path versions() const { return path_ / "versions.txt"; }

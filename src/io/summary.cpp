@@ -49,7 +49,24 @@ ordered_json fault_part(const Summary::FaultPlace& f) {
   if (!f.body.empty()) {
     json["body"] = f.body;
   }
+  if (!f.other_body.empty()) {
+    json["other_body"] = f.other_body;
+  }
+  if (f.share) {
+    json["share"] = *f.share;
+  }
   json["cure"] = f.cure;
+  json["history"] = ordered_json::array();
+  for (const Summary::FaultPlace::Row& row : f.history) {
+    json["history"].push_back({{"step", row.step},
+                               {"time", row.time},
+                               {"dt", row.dt},
+                               {"energy_error", row.energy_error},
+                               {"kinetic", row.kinetic},
+                               {"internal", row.internal},
+                               {"contact_work", row.contact_work},
+                               {"off", row.off}});
+  }
   return json;
 }
 
@@ -141,6 +158,7 @@ ordered_json to_json(const Summary& s) {
   json["frames"] = s.frames;
   json["epochs"] = s.epochs;
   json["rollbacks"] = s.rollbacks;
+  json["retries"] = s.retries;
   json["islands_fewest"] = s.islands_fewest;
   json["islands_most"] = s.islands_most;
   json["contacts_most"] = s.contacts_most;

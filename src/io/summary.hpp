@@ -49,6 +49,7 @@ struct Summary {
   std::int64_t frames{};   ///< In the results file
   std::int64_t epochs{};
   std::int64_t rollbacks{};
+  std::int64_t retries{};  ///< Epochs done again with half the step after a fault
   std::int64_t islands_fewest{};
   std::int64_t islands_most{};
   std::int64_t contacts_most{};  ///< Most pairs in contact at the same time
@@ -60,7 +61,20 @@ struct Summary {
     std::int64_t element{-1};
     std::int64_t node{-1};
     std::string body;
+    std::string other_body;  ///< Of a pair in contact; empty: none
     std::string cure;
+    std::optional<double> share;  ///< Of what the energy balance is off [-]
+    struct Row {                  ///< Of `body` at the end of an epoch [time, force*length]
+      std::int64_t step{};
+      double time{};
+      double dt{};
+      double energy_error{};  ///< Of the model [-]
+      double kinetic{};
+      double internal{};
+      double contact_work{};
+      double off{};
+    };
+    std::vector<Row> history;  ///< The oldest first
   } fault;
 
   /// What mass scaling gave one part of a body.

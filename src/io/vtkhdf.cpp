@@ -25,6 +25,14 @@ hsize_t chunk_rows(Index rows, hsize_t bytes_of_row) {
   return std::clamp<hsize_t>(static_cast<hsize_t>(rows), 1, largest / bytes_of_row);
 }
 
+std::vector<std::string> names_of(const model::Model& model) {
+  std::vector<std::string> names;
+  for (const model::Body& body : model.bodies) {
+    names.push_back(body.name);
+  }
+  return names;
+}
+
 }  // namespace
 
 struct ResultsWriter::Parts {
@@ -50,10 +58,10 @@ struct ResultsWriter::Parts {
   Handle element_offsets{};
   std::vector<Handle> constant_offsets{};  // never written: their rows have the fill value
 
-  void make_structure(const model::Model& model, const ResultsOptions& options);
+  void make_structure(const ResultsMesh& mesh, const ResultsOptions& options);
   void make_steps();
-  void make_own_group(const model::Model& model, const ResultsOptions& options);
-  void write_topology(const model::Model& model);
+  void make_own_group(const ResultsMesh& mesh, const ResultsOptions& options);
+  void write_topology(const ResultsMesh& mesh);
   void open_datasets();
   void release_datasets();
   [[nodiscard]] bool fits(const model::Frame& frame) const;
@@ -61,7 +69,7 @@ struct ResultsWriter::Parts {
   void write_frame(const model::Frame& frame);
 };
 
-void ResultsWriter::Parts::write_topology(const model::Model& model) {
+void ResultsWriter::Parts::write_topology(const ResultsMesh& mesh) {
   const std::int64_t node_count = nodes;
   const std::int64_t element_count = elements;
   const std::int64_t corner_count = 3 * element_count;
@@ -71,7 +79,7 @@ void ResultsWriter::Parts::write_topology(const model::Model& model) {
 
   std::vector<std::int64_t> numbers;
   numbers.reserve(static_cast<std::size_t>(corner_count));
-  for (const auto& corners : model.triangle) {
+  for (const auto& corners : mesh.triangle) {
     numbers.insert(numbers.end(), corners.begin(), corners.end());
   }
   file.write_fixed("/VTKHDF/Connectivity", H5T_NATIVE_INT64, {numbers.size(), 0}, numbers.data());
@@ -81,7 +89,7 @@ void ResultsWriter::Parts::write_topology(const model::Model& model) {
   }
   file.write_fixed("/VTKHDF/Offsets", H5T_NATIVE_INT64, {numbers.size(), 0}, numbers.data());
   constexpr std::uint8_t vtk_triangle = 5;
-  const std::vector<std::uint8_t> types(model.triangle.size(), vtk_triangle);
+  const std::vector<std::uint8_t> types(mesh.triangle.size(), vtk_triangle);
   file.write_fixed("/VTKHDF/Types", H5T_NATIVE_UINT8, {types.size(), 0}, types.data());
 }
 
@@ -110,31 +118,26 @@ void ResultsWriter::Parts::make_steps() {
   }
 }
 
-void ResultsWriter::Parts::make_own_group(const model::Model& model, const ResultsOptions& options) {
+void ResultsWriter::Parts::make_own_group(const ResultsMesh& mesh, const ResultsOptions& options) {
   file.make_group("/fexp");
   file.set_attribute("/fexp", "format", std::vector<std::int64_t>{1});
   file.set_attribute("/fexp", "plastic", std::vector<std::int64_t>{plastic ? 1 : 0});
   file.set_attribute("/fexp", "program", "fexp " FEXP_VERSION);
   file.set_attribute("/fexp", "title", options.title);
   (void)file.make_growing("/fexp/step", H5T_NATIVE_INT64, 0, {step_rows});
-  std::vector<std::string> names;
-  for (const model::Body& body : model.bodies) {
-    names.push_back(body.name);
-  }
-  file.write_strings("/fexp/body_names", names);
-  file.write_fixed("/fexp/node_body", H5T_NATIVE_INT32, {model.node_body.size(), 0}, model.node_body.data());
-  file.write_fixed("/fexp/node_label", H5T_NATIVE_INT64, {model.node_label.size(), 0}, model.node_label.data());
-  file.write_fixed("/fexp/element_label", H5T_NATIVE_INT64, {model.element_label.size(), 0},
-                   model.element_label.data());
+  file.write_strings("/fexp/body_names", mesh.body_name);
+  file.write_fixed("/fexp/node_body", H5T_NATIVE_INT32, {mesh.node_body.size(), 0}, mesh.node_body.data());
+  file.write_fixed("/fexp/node_label", H5T_NATIVE_INT64, {mesh.node_label.size(), 0}, mesh.node_label.data());
+  file.write_fixed("/fexp/element_label", H5T_NATIVE_INT64, {mesh.element_label.size(), 0}, mesh.element_label.data());
 }
 
-void ResultsWriter::Parts::make_structure(const model::Model& model, const ResultsOptions& options) {
+void ResultsWriter::Parts::make_structure(const ResultsMesh& mesh, const ResultsOptions& options) {
   file.make_group("/VTKHDF");
   file.set_attribute("/VTKHDF", "Version", std::vector<std::int64_t>{2, 0});
   file.set_attribute("/VTKHDF", "Type", "UnstructuredGrid");
   file.make_group("/VTKHDF/PointData");
   file.make_group("/VTKHDF/CellData");
-  write_topology(model);
+  write_topology(mesh);
   constexpr hsize_t point_bytes = sizeof(Vec3d);
   (void)file.make_growing("/VTKHDF/Points", H5T_NATIVE_DOUBLE, 3, {chunk_rows(nodes, point_bytes), deflate});
   file.set_attribute("/VTKHDF/Points", "unit", "length");
@@ -146,7 +149,7 @@ void ResultsWriter::Parts::make_structure(const model::Model& model, const Resul
     file.set_attribute(path_of(field), "unit", std::string(field.unit));
     file.set_attribute(path_of(field), "meaning", std::string(field.meaning));
   }
-  make_own_group(model, options);
+  make_own_group(mesh, options);
   make_steps();
 }
 
@@ -220,17 +223,37 @@ ResultsWriter::ResultsWriter(ResultsWriter&&) noexcept = default;
 ResultsWriter& ResultsWriter::operator=(ResultsWriter&&) noexcept = default;
 ResultsWriter::~ResultsWriter() = default;
 
-// The file gets its name when its structure is complete, so under that name it can always be opened.
+ResultsMesh::ResultsMesh(const model::Model& model)
+    : triangle(model.triangle),
+      node_body(model.node_body),
+      node_label(model.node_label),
+      element_label(model.element_label),
+      body_name(names_of(model)),
+      plastic(model.plastic) {}
+
+ResultsMesh::ResultsMesh(const model::Model& model, const model::Cutout& cutout)
+    : triangle(cutout.triangle),
+      node_body(cutout.node_body),
+      node_label(cutout.node_label),
+      element_label(cutout.element_label),
+      body_name(names_of(model)),
+      plastic(model.plastic) {}
+
 ResultsWriter::ResultsWriter(const std::filesystem::path& path, const model::Model& model,
+                             const ResultsOptions& options)
+    : ResultsWriter(path, ResultsMesh(model), options) {}
+
+// The file gets its name when its structure is complete, so under that name it can always be opened.
+ResultsWriter::ResultsWriter(const std::filesystem::path& path, const ResultsMesh& mesh,
                              const ResultsOptions& options) {
   const std::filesystem::path unfinished = path.string() + ".new";
   const auto capacity = static_cast<std::size_t>(std::clamp<std::int64_t>(2 * options.expected_frames, 128, 65534));
   parts_ = std::make_unique<Parts>(Parts{.file = hdf5::File::create(unfinished, capacity),
-                                         .nodes = model.node_count(),
-                                         .elements = model.element_count(),
+                                         .nodes = static_cast<Index>(mesh.node_body.size()),
+                                         .elements = static_cast<Index>(mesh.triangle.size()),
                                          .deflate = options.deflate,
-                                         .plastic = model.plastic});
-  parts_->make_structure(model, options);
+                                         .plastic = mesh.plastic});
+  parts_->make_structure(mesh, options);
   parts_->open_datasets();
   parts_->file.flush();
   std::error_code error;

@@ -1,15 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "model/capture.hpp"
+#include "model/cutout.hpp"
 #include "model/model.hpp"
 
 namespace fexp::io {
+
+/// The mesh that results are of: a model's, or a part of it. Both must outlive it.
+struct ResultsMesh {
+  std::span<const std::array<Index, 3>> triangle;  // [elements]
+  std::span<const Index> node_body;                // [nodes]
+  std::span<const std::int64_t> node_label;        // [nodes]
+  std::span<const std::int64_t> element_label;     // [elements]
+  std::vector<std::string> body_name;              // [bodies of the model]
+  bool plastic{};                                  ///< Some material of the model is plastic
+
+  explicit ResultsMesh(const model::Model& model);
+  ResultsMesh(const model::Model& model, const model::Cutout& cutout);
+};
 
 struct ResultsOptions {
   std::string title;
@@ -27,6 +44,7 @@ class ResultsWriter {
  public:
   /// Creates the file, replacing one of that name.
   ResultsWriter(const std::filesystem::path& path, const model::Model& model, const ResultsOptions& options = {});
+  ResultsWriter(const std::filesystem::path& path, const ResultsMesh& mesh, const ResultsOptions& options = {});
   ResultsWriter(ResultsWriter&&) noexcept;
   ResultsWriter& operator=(ResultsWriter&&) noexcept;
   ~ResultsWriter();

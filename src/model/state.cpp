@@ -49,13 +49,14 @@ class Reader {
 
 // Records of doubles alone have no padding and are copied whole.
 static_assert(sizeof(NodeMotion) == 9 * sizeof(double) && sizeof(NodeAcceleration) == 6 * sizeof(double));
-static_assert(sizeof(BodyLedger) == 11 * sizeof(double));
+static_assert(sizeof(BodyLedger) == 12 * sizeof(double));
 static_assert(sizeof(RigidMotion) == 19 * sizeof(double));
 
 std::size_t row_offset(Index block, Index row) { return (at(block) * element_rows + at(row)) * at(block_lanes); }
 
 /// Of a remembered side of either kind.
 constexpr std::size_t side_bytes = 2 * sizeof(Index) + sizeof(std::int8_t) + sizeof(Vec3d);
+constexpr std::size_t book_bytes = sizeof(Index) + 5 * sizeof(double);
 
 Index layer_rows(const Model& model, const ElementBlock& block) {
   return block.layer_row == no_index ? 0 : model.sections[at(block.section)].layer_rows();
@@ -88,8 +89,9 @@ std::size_t bytes_before_sides(const Model& model, const Body& body) {
 }
 
 /// `sides`: of both kinds together.
-std::size_t bytes_of_body(const Model& model, const Body& body, std::size_t sides) {
-  return bytes_before_sides(model, body) + 2 * sizeof(std::int64_t) + sides * side_bytes + sizeof(BodyLedger);
+std::size_t bytes_of_body(const Model& model, const Body& body, std::size_t sides, std::size_t books) {
+  return bytes_before_sides(model, body) + 3 * sizeof(std::int64_t) + sides * side_bytes + books * book_bytes +
+         sizeof(BodyLedger);
 }
 
 std::pair<Index, Index> pair_of(const ContactSide& s) { return {s.node, s.element}; }
@@ -127,6 +129,18 @@ bool are_sides_of(const Model& model, const Body& body, const std::vector<Side>&
   return true;
 }
 
+/// True when they are in order and of bodies with which this one can keep books.
+bool are_books_of(const Model& model, Index body, const std::vector<PairBook>& books) {
+  for (std::size_t i = 0; i < books.size(); ++i) {
+    const Index other = books[i].other;
+    const bool known = other >= 0 && other < model.body_count() && (other >= body || model.bodies[at(other)].barrier);
+    if (!known || (i > 0 && books[i - 1].other >= other)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 template <class Side>
 void write_sides(const std::vector<Side>& sides, Writer& writer) {
   for (const Side& side : sides) {
@@ -153,6 +167,27 @@ std::vector<Side> read_sides(std::size_t count, Reader& reader) {
     sides.push_back({first, second, side, drag});
   }
   return sides;
+}
+
+void write_books(const std::vector<PairBook>& books, Writer& writer) {
+  for (const PairBook& book : books) {
+    const std::array<double, 5> sums{book.initial, book.energy, book.dissipated, book.work, book.work_other};
+    writer.write(&book.other, 1);
+    writer.write(sums.data(), sums.size());
+  }
+}
+
+std::vector<PairBook> read_books(std::size_t count, Reader& reader) {
+  std::vector<PairBook> books;
+  books.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Index other = 0;
+    std::array<double, 5> sums{};
+    reader.read(&other, 1);
+    reader.read(sums.data(), sums.size());
+    books.push_back({other, sums[0], sums[1], sums[2], sums[3], sums[4]});
+  }
+  return books;
 }
 
 }  // namespace
@@ -213,6 +248,7 @@ State initial_state(const Model& model) {
   state.edge_sides.resize(model.bodies.size());
   state.wall_drag.resize(model.reference_position.size() * at(model.rubbing_walls));
   state.ledger.resize(model.bodies.size());
+  state.pair_books.resize(model.bodies.size());
   return state;
 }
 
@@ -240,18 +276,21 @@ void copy_body(const Model& model, const State& from, Index body, State& to) {
   to.sides[at(body)] = from.sides[at(body)];
   to.edge_sides[at(body)] = from.edge_sides[at(body)];
   to.ledger[at(body)] = from.ledger[at(body)];
+  to.pair_books[at(body)] = from.pair_books[at(body)];
 }
 
 // Order: motion of the nodes (x, v, omega), their accelerations (a, alpha), the drag of rubbing walls node by node,
 // rows of the elements and of their layers block by block (used lanes only), the motion of a rigid body, the numbers of
-// sides of nodes and of edges (64 bits each), the sides of nodes (node, element, side: 32, 32 and 8 bits, drag), those
-// of edges (first, second, side, drag), the ledger. All numbers are little-endian and stand side by side.
+// sides of nodes, of sides of edges and of books (64 bits each), the sides of nodes (node, element, side: 32, 32 and 8
+// bits, drag), those of edges (first, second, side, drag), the books (other body: 32 bits, five sums), the ledger. All
+// numbers are little-endian and stand side by side.
 void append_body_bytes(const Model& model, const State& state, Index body, std::vector<std::byte>& bytes) {
   const Body& owner = model.bodies[at(body)];
   const std::vector<ContactSide>& sides = state.sides[at(body)];
   const std::vector<EdgeSide>& edge_sides = state.edge_sides[at(body)];
   const std::size_t before = bytes.size();
-  bytes.resize(before + bytes_of_body(model, owner, sides.size() + edge_sides.size()));
+  const std::vector<PairBook>& books = state.pair_books[at(body)];
+  bytes.resize(before + bytes_of_body(model, owner, sides.size() + edge_sides.size(), books.size()));
   Writer writer(bytes.data() + before);
   writer.write(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));
   writer.write(state.acceleration.data() + owner.nodes.begin, at(owner.nodes.size()));
@@ -261,37 +300,45 @@ void append_body_bytes(const Model& model, const State& state, Index body, std::
   if (owner.rigid != no_index) {
     writer.write(&state.rigid[at(owner.rigid)], 1);
   }
-  const std::array<std::int64_t, 2> counts{static_cast<std::int64_t>(sides.size()),
-                                           static_cast<std::int64_t>(edge_sides.size())};
+  const std::array<std::int64_t, 3> counts{static_cast<std::int64_t>(sides.size()),
+                                           static_cast<std::int64_t>(edge_sides.size()),
+                                           static_cast<std::int64_t>(books.size())};
   writer.write(counts.data(), counts.size());
   write_sides(sides, writer);
   write_sides(edge_sides, writer);
+  write_books(books, writer);
   writer.write(&state.ledger[at(body)], 1);
 }
 
 bool read_body_bytes(const Model& model, std::span<const std::byte> bytes, Index body, State& state) {
   const Body& owner = model.bodies[at(body)];
   const std::size_t front = bytes_before_sides(model, owner);
-  const std::size_t least = bytes_of_body(model, owner, 0);
+  const std::size_t least = bytes_of_body(model, owner, 0, 0);
   if (bytes.size() < least) {
     return false;
   }
-  std::array<std::int64_t, 2> counts{};
+  std::array<std::int64_t, 3> counts{};
   Reader(bytes.data() + front).read(counts.data(), counts.size());
-  const std::size_t room = (bytes.size() - least) / side_bytes;
+  const std::size_t room = bytes.size() - least;
   const auto fits = [room](std::int64_t count) { return count >= 0 && static_cast<std::uint64_t>(count) <= room; };
-  if (!fits(counts[0]) || !fits(counts[1]) ||
-      bytes.size() != least + static_cast<std::size_t>(counts[0] + counts[1]) * side_bytes) {
+  if (!std::ranges::all_of(counts, fits)) {
+    return false;
+  }
+  const auto side_count = static_cast<std::size_t>(counts[0] + counts[1]);
+  if (bytes.size() != bytes_of_body(model, owner, side_count, static_cast<std::size_t>(counts[2]))) {
     return false;
   }
   Reader rear(bytes.data() + front + sizeof(counts));
   std::vector<ContactSide> sides = read_sides<ContactSide>(static_cast<std::size_t>(counts[0]), rear);
   std::vector<EdgeSide> edge_sides = read_sides<EdgeSide>(static_cast<std::size_t>(counts[1]), rear);
-  if (!are_sides_of(model, owner, sides) || !are_sides_of(model, owner, edge_sides)) {
+  std::vector<PairBook> books = read_books(static_cast<std::size_t>(counts[2]), rear);
+  if (!are_sides_of(model, owner, sides) || !are_sides_of(model, owner, edge_sides) ||
+      !are_books_of(model, body, books)) {
     return false;
   }
   state.sides[at(body)] = std::move(sides);
   state.edge_sides[at(body)] = std::move(edge_sides);
+  state.pair_books[at(body)] = std::move(books);
   rear.read(&state.ledger[at(body)], 1);
   Reader reader(bytes.data());
   reader.read(state.motion.data() + owner.nodes.begin, at(owner.nodes.size()));

@@ -71,11 +71,28 @@ struct BodyLedger {
   double external_work{};   ///< Loads, gravity and prescribed motion [force*length], integrated
   double damping_work{};    ///< Work taken out by damping (>= 0) [force*length], integrated
   double contact_energy{};  ///< Potential of the pairs that are booked to this body [force*length]
-  double
-      contact_dissipation{};  ///< Taken by friction and damping of contact and walls (>= 0) [force*length], integrated
-  double barrier_energy{};    ///< Potential of rigid walls, with that of sticking to them [force*length]
-  Vec3d external_impulse{};   ///< Loads, walls, damping and constraints [force*time], integrated
+  /// Taken by friction and damping of contact and walls (>= 0) [force*length], integrated
+  double contact_dissipation{};
+  double barrier_energy{};           ///< Potential of rigid walls, with that of sticking to them [force*length]
+  double contact_work{};             ///< Of contact forces on this body [force*length], integrated
+  Vec3d external_impulse{};          ///< Loads, walls, damping and constraints [force*time], integrated
   Vec3d external_angular_impulse{};  ///< The same about the origin [force*length*time], integrated
+};
+
+/// Books of the contact between two bodies, or of a body with itself. The lower one keeps them, or the other where that
+/// is a barrier. Works are those of the forces at both ends of a step over its way, half each, as central differences
+/// turn them into motion: what they and the potential do not account for is the error of contact in time.
+struct PairBook {
+  Index other{};        ///< The body that does not keep the books
+  double initial{};     ///< Potential when the run began [force*length]
+  double energy{};      ///< Potential at the last evaluated forces [force*length]
+  double dissipated{};  ///< By friction and damping [force*length], integrated
+  double work{};        ///< On the body that keeps the books [force*length], integrated
+  double work_other{};  ///< On the other one, or 0 where there is none [force*length], integrated
+
+  /// What has come from nowhere (> 0) or gone there [force*length].
+  [[nodiscard]] double open() const noexcept { return energy - initial + dissipated + work + work_other; }
+  friend bool operator==(const PairBook&, const PairBook&) = default;
 };
 
 /// The state at a step boundary: all that a restart or another machine needs.
@@ -93,7 +110,8 @@ struct State {
                                                   // or the second where the first is a barrier's
   /// Friction and damping of walls at the last step [force], shape [nodes][rubbing walls of the model]
   std::vector<Vec3d> wall_drag;
-  std::vector<BodyLedger> ledger;  // [bodies]
+  std::vector<BodyLedger> ledger;                 // [bodies]
+  std::vector<std::vector<PairBook>> pair_books;  // [bodies]: sorted by the other body; none that are all zero
 };
 
 /// State at time zero: reference positions, initial velocities as far as fixed nodes and planes of symmetry allow, no

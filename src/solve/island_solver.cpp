@@ -74,6 +74,7 @@ void IslandSolver::evaluate(const model::Model& model, model::State& state, Work
     partial = {};
   }
   move_walls(still);
+  clear_contact(still);
   contact_forces(still);
   if (!workspace.load.empty()) {
     load_nodes(still);
@@ -128,8 +129,13 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
     total.steps_done = i + 1;
     total.active_pairs = contact_report_.active_pairs;
     total.most_active_pairs = std::max(total.most_active_pairs, contact_report_.active_pairs);
-    total.contact_frequency2 = std::max(
-        total.contact_frequency2, inertia_ratio_ * (contact_report_.max_stiffness_over_mass + barrier_frequency2_));
+    const double frequency2 = inertia_ratio_ * (contact_report_.max_stiffness_over_mass + barrier_frequency2_);
+    if (total.contact_frequency2 < frequency2) {
+      total.contact_frequency2 = frequency2;
+      const bool by_wall = barrier_frequency2_ > contact_report_.max_stiffness_over_mass;
+      total.stiffest_node = by_wall ? no_index : contact_report_.stiffest_node;
+      total.stiffest_element = by_wall ? no_index : contact_report_.stiffest_element;
+    }
     total.candidates = contact_report_.candidates;
     total.searches = contact_report_.searches - searches_before;
     if (contact_report_.deepest > total.deepest) {
@@ -291,8 +297,16 @@ bool IslandSolver::check_motion(const Step& step, const EpochPlan& plan, IslandR
       return false;
     }
   }
+  clear_contact(step);
+  contact_.book_half_work(step.model, step.state, step.dt, step.workspace.body_contact.data());
   contact_.advance(step.model, step.state, largest);
   return true;
+}
+
+void IslandSolver::clear_contact(const Step& step) {
+  for (const Index index : bodies_) {
+    step.workspace.body_contact[at(index)] = {};
+  }
 }
 
 void IslandSolver::contact_forces(const Step& step) {
@@ -305,9 +319,6 @@ void IslandSolver::contact_forces(const Step& step) {
       std::fill(contact.stiffness.begin() + nodes.begin, contact.stiffness.begin() + nodes.end, 0.0);
     }
   }
-  for (const Index index : bodies_) {
-    step.workspace.body_contact[at(index)] = {};
-  }
   contact_report_ =
       contact_.evaluate(step.model, step.state, step.dt, step.workspace.contact, step.workspace.body_contact.data());
   contact_written_ = contact_report_.active_pairs > 0;
@@ -315,6 +326,7 @@ void IslandSolver::contact_forces(const Step& step) {
     const contact::BodyContact& contact = step.workspace.body_contact[at(index)];
     step.state.ledger[at(index)].contact_energy = contact.energy;
     step.state.ledger[at(index)].contact_dissipation += contact.dissipated;
+    step.state.ledger[at(index)].contact_work += contact.work;
   }
 }
 
@@ -400,7 +412,7 @@ void IslandSolver::close_pieces(const Step& step) {
 }
 
 void IslandSolver::record_hashes(const Step& step, std::int64_t number, std::vector<HashRecord>& hashes) const {
-  contact_.store_sides(step.model, step.state);
+  store(step.model, step.state);
   const std::size_t first = hashes.size();
   hashes.resize(first + bodies_.size());
   parallel::for_each(static_cast<Index>(bodies_.size()), body_grain, [&](Index i) {

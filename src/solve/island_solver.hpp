@@ -37,9 +37,11 @@ struct IslandReport {
   Index steps_done{};
   StopReason stop{StopReason::none};
   Index stop_body{no_index};
-  Index stop_node{no_index};    ///< For not_finite: the lowest node concerned.
-  double contact_frequency2{};  ///< Largest bound of omega^2 from contact and walls seen [1/time^2]
-  Index active_pairs{};         ///< At the last step
+  Index stop_node{no_index};      ///< For not_finite: the lowest node concerned.
+  double contact_frequency2{};    ///< Largest bound of omega^2 from contact and walls seen [1/time^2]
+  Index stiffest_node{no_index};  ///< Of the pair of contact that has it, if one has
+  Index stiffest_element{no_index};
+  Index active_pairs{};  ///< At the last step
   Index most_active_pairs{};
   Index candidates{};
   Index searches{};
@@ -60,12 +62,18 @@ class IslandSolver {
   /// after the state was put back or came from elsewhere. `time` is that of the state.
   void evaluate(const model::Model& model, model::State& state, Workspace& workspace);
 
+  /// Has contact remember its forces, where an island takes up bodies whose forces are evaluated already.
+  void recall(const model::Model& model, const model::State& state) { contact_.recall(model, state); }
+
   /// Takes plan.steps half-step central-difference steps [BLM00, box 6.1], or stops early for a reason.
   IslandReport advance(const model::Model& model, model::State& state, Workspace& workspace, const EpochPlan& plan,
                        std::vector<HashRecord>& hashes);
 
-  /// Writes what only the island knows (contact sides) back to the state.
-  void store(const model::Model& model, model::State& state) const { contact_.store_sides(model, state); }
+  /// Writes what only the island knows (contact sides and books) back to the state.
+  void store(const model::Model& model, model::State& state) const {
+    contact_.store_sides(model, state);
+    contact_.store_books(state);
+  }
 
   [[nodiscard]] std::span<const Index> bodies() const noexcept { return bodies_; }
   [[nodiscard]] std::span<const Index> barriers() const noexcept { return barriers_; }
@@ -111,6 +119,7 @@ class IslandSolver {
   struct Step;  // defined in solve/island_step.hpp
 
   void opening_half(const Step& step);
+  void clear_contact(const Step& step);
   void contact_forces(const Step& step);
   void load_nodes(const Step& step);
   void advance_pieces(const Step& step, Pass pass);

@@ -6,10 +6,16 @@ usage: ending.py PROGRAM
 """
 import json
 import signal
+import sys
 import time
+from pathlib import Path
 
 import h5py
+import numpy as np
 import program
+
+sys.path.append(str(Path(__file__).parents[1] / "results"))
+from vtkhdf_layout import Results  # noqa: E402
 
 
 class Ending(program.Case):
@@ -117,11 +123,74 @@ class Fault(Ending):
         summary = json.loads(result.stdout)
         self.assertEqual((summary["completed"], summary["exit_reason"]), (False, "fault"))
         self.assertEqual(summary["fault"]["body"], "ball")
+        self.assertEqual(summary["retries"], 1)
+        self.assertRegex(self.log(), "the epoch was put back and done again with half the step")
         self.assertGreater(summary["energy_error"], 1e-12)
         self.check_readable(summary["frames"])
         with h5py.File(self.folder / "here/results.vtkhdf") as file:
             self.assertEqual(file["VTKHDF/Steps/Values"][summary["frames"] - 1], summary["time"])
             self.assertEqual(file["fexp/step"][summary["frames"] - 1], summary["steps"])
+        self.check_neighbourhood(summary)
+
+    def check_neighbourhood(self, summary):
+        """fault.vtkhdf has the start of the last epoch and the end, and the element of the fault first."""
+        path = self.folder / "here/fault.vtkhdf"
+        self.assertEqual(summary["files"]["fault"], "here/fault.vtkhdf")
+        around = Results(path)
+        self.assertEqual(around.frames, 2)
+        self.assertEqual(around.times[1], summary["time"])
+        self.assertLess(around.times[0], around.times[1])
+        self.assertEqual(around.step(1), summary["steps"])
+        everything = Results(self.folder / "here/results.vtkhdf")
+        self.assertEqual(around.cells_count, everything.cells_count)
+        labels, every_label = around.file["fexp/element_label"][:], everything.file["fexp/element_label"][:]
+        self.assertEqual(labels[0], summary["fault"]["element"])
+        bodies, names = around.data("CellData", 1)["body"], around.file["fexp/body_names"].asstr()[:]
+        self.assertEqual(names[bodies[0]], summary["fault"]["body"])
+        # The same elements at the same places with the same values as in the results.
+        key = [(body, label) for body, label in zip(everything.data("CellData", 0)["body"], every_label)]
+        place = {pair: index for index, pair in enumerate(key)}
+        order = [place[pair] for pair in zip(bodies, labels)]
+        last = everything.frames - 1
+        for name, values in around.data("CellData", 1).items():
+            self.assertTrue(np.array_equal(values, everything.data("CellData", last)[name][order]), name)
+        centres = around.points(1)[around.triangles].mean(axis=1)
+        whole = everything.points(last)[everything.triangles].mean(axis=1)
+        self.assertTrue(np.array_equal(centres, whole[order]))
+        self.assertTrue(np.isnan(around.data("PointData", 0)["contact_force"]).all())
+        self.assertTrue(np.isfinite(around.data("PointData", 1)["contact_force"]).all())
+        starts = around.points(0)[around.triangles].mean(axis=1)
+        distance = np.linalg.norm(starts - starts[0], axis=1)
+        self.assertTrue((np.diff(distance) >= -1e-12).all(), "not in order of distance")
+
+    def test_a_fault_of_a_pair_names_both_bodies_and_shows_their_last_epochs(self):
+        name = self.write_deck(duration=100.0, velocity=-6.0, energy_drift_limit=1e-3)
+        text = (self.folder / name).read_text(encoding="utf-8").replace("translate = [-12.0, -3.0, 1.0]",
+                                                                       "translate = [-3.0, -3.0, 0.9]")
+        text = text.replace("count = [2, 1, 1]", "count = [1, 1, 1]")
+        (self.folder / name).write_text(text + "[contact]\npenalty_scale = 0.01\n", encoding="utf-8")
+        result = self.fexp("run", name, "--out", "here")
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertRegex(result.stderr, r'% of it by contact of body "ball" with body "plate\[0,0,0\]", hardest: node \d+ of body')
+        for words in ("the last epochs:", 'body "ball"', 'body "plate[0,0,0]"', "contact work", "fault.vtkhdf"):
+            self.assertIn(words, result.stderr)
+        summary = json.loads((self.folder / "here/summary.json").read_text(encoding="utf-8"))
+        fault = summary["fault"]
+        self.assertEqual((fault["body"], fault["other_body"]), ("ball", "plate[0,0,0]"))
+        self.assertGreater(fault["share"], 0.5)
+        self.assertEqual(fault["history"][-1]["step"], summary["steps"])
+        self.assertLessEqual(len(fault["history"]), 6)
+        self.assertIn("the last epochs", self.log())
+
+    def test_a_sound_run_leaves_no_file_of_a_fault_and_a_new_run_takes_an_old_one_away(self):
+        self.fexp("run", self.write_deck(energy_drift_limit=1e-12), "--out", "here")
+        self.assertTrue((self.folder / "here/fault.vtkhdf").exists())
+        result = self.fexp("run", self.write_deck(), "--out", "here", "--force")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertFalse((self.folder / "here/fault.vtkhdf").exists())
+        summary = json.loads((self.folder / "here/summary.json").read_text(encoding="utf-8"))
+        self.assertEqual(summary["retries"], 0)
+        self.assertNotIn("fault", summary["files"])
 
 
 if __name__ == "__main__":

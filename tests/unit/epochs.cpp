@@ -204,11 +204,12 @@ TEST(faults, a_force_that_is_infinite_from_the_start_is_met_in_the_first_step) {
 TEST(faults, an_energy_drift_names_the_most_strained_element_its_body_and_the_bound) {
   auto d = test::description(rubber, 0.02);
   d.run.safety = 1.0;
-  d.run.energy_drift_limit = 1.0e-7;
+  d.run.energy_drift_limit = 1.0e-9;
   test::add_body(d, "resting", plate(1.0, 3));
   test::add_body(d, "ringing", plate(1.0, 3)).translate = {3.0, 0.0, 0.0};
+  d.bodies.back().velocity = {0.0, 0.0, 1.0};
   test::add_box_set(d, "corner", {3.9, 0.9, -1.0}, {4.1, 1.1, 1.0});
-  d.forces.push_back({"corner", {0.0, 0.0, 1.0}, {}, false, "", {}});
+  test::fix(d, "corner", {"x", "y", "z"});
   const model::Model model = test::build(d);
   Simulation simulation(model, solve::KernelChoice::automatic);
   EpochReport report;
@@ -216,11 +217,13 @@ TEST(faults, an_energy_drift_names_the_most_strained_element_its_body_and_the_bo
     report = simulation.run_epoch(far);
   }
   ASSERT_EQ(report.fault.kind, FaultKind::energy_drift);
-  EXPECT_GT(report.energy_error, 1.0e-7);
+  EXPECT_GT(report.energy_error, 1.0e-9);
   EXPECT_EQ(report.fault.body, 1);
+  EXPECT_EQ(report.fault.other, no_index);
+  EXPECT_GT(report.fault.share, 0.99);
   const std::string label = "element " + std::to_string(model.element_label[at(report.fault.element)]);
   EXPECT_NE(report.fault.message.find(label + " of body \"ringing\""), std::string::npos) << report.fault.message;
-  EXPECT_NE(report.fault.message.find("1e-07"), std::string::npos) << report.fault.message;
+  EXPECT_NE(report.fault.message.find("1e-09"), std::string::npos) << report.fault.message;
   EXPECT_NE(report.fault.cure.find("energy_drift_limit"), std::string::npos) << report.fault.cure;
 }
 

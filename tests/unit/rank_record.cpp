@@ -14,7 +14,9 @@ RankRecord made(int k) {
   RankRecord record;
   record.good_steps = 10 - k;
   record.left_box = k == 1;
-  record.contact_frequency2 = 0.1 * k;
+  record.contact_frequency2 = k == 0 ? 0.1 : 0.2;
+  record.stiffest_node = 300 - k;
+  record.stiffest_element = 400 - k;
   record.active_pairs = k;
   record.candidates = 2 * k;
   record.searches = 3 * k;
@@ -41,6 +43,8 @@ TEST(rank_record, sums_are_the_same_in_any_order_of_ranks) {
   EXPECT_EQ(first.good_steps, 8);
   EXPECT_TRUE(first.left_box);
   EXPECT_EQ(first.contact_frequency2, 0.2);
+  EXPECT_EQ(first.stiffest_node, 298);
+  EXPECT_EQ(first.stiffest_element, 398);
   EXPECT_EQ(first.active_pairs, 3);
   EXPECT_EQ(first.candidates, 6);
   EXPECT_EQ(first.searches, 9);
@@ -64,6 +68,7 @@ TEST(rank_record, sums_are_the_same_in_any_order_of_ranks) {
     EXPECT_EQ(sum.broken_node, first.broken_node);
     EXPECT_EQ(sum.good_steps, first.good_steps);
     EXPECT_EQ(sum.contact_frequency2, first.contact_frequency2);
+    EXPECT_EQ(sum.stiffest_node, first.stiffest_node);
   }
 }
 

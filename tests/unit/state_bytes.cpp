@@ -63,7 +63,7 @@ State random_state(const Model& model, unsigned seed) {
   fill(state.history.data(), state.history.size());
   fill(state.layers.data(), state.layers.size());
   fill(numbers(state.wall_drag), 3 * state.wall_drag.size());
-  fill(numbers(state.ledger), 11 * state.ledger.size());
+  fill(numbers(state.ledger), 12 * state.ledger.size());
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     for (Index i = 0; i < 4; ++i) {
       state.sides[b].push_back({model.bodies[b].nodes.begin + i,
@@ -73,6 +73,8 @@ State random_state(const Model& model, unsigned seed) {
     }
     const Index edge = 3 * model.bodies[b].elements.begin, last = 3 * model.element_count() - 1;
     state.edge_sides[b] = {{edge, edge + 5, 1, {number(random), 0.0, 1.0}}, {edge, last, -1, {}}};
+    state.pair_books[b].push_back(
+        {static_cast<Index>(b), number(random), number(random), number(random), number(random), number(random)});
   }
   return state;
 }
@@ -131,6 +133,7 @@ TEST(state_bytes, what_is_written_is_read_back_bit_for_bit_and_only_into_its_bod
   EXPECT_TRUE(std::isnan(to.acceleration[node].linear.y));
   EXPECT_EQ(to.sides[1], from.sides[1]);
   EXPECT_EQ(to.edge_sides[1], from.edge_sides[1]);
+  EXPECT_EQ(to.pair_books[1], from.pair_books[1]);
   EXPECT_EQ(body_hash(m, to, 1), body_hash(m, from, 1));
 }
 
@@ -144,7 +147,7 @@ TEST(state_bytes, the_layout_is_the_documented_one) {
     return value;
   };
   const Body& body = m.bodies[1];
-  ASSERT_EQ(bytes.size(), 16U * 15U * 8U + 18U * 12U * 8U + 16U + 6U * 33U + 88U);
+  ASSERT_EQ(bytes.size(), 16U * 15U * 8U + 18U * 12U * 8U + 24U + 6U * 33U + 44U + 96U);
   EXPECT_EQ(number_at(0), s.motion[at(body.nodes.begin)].position.x);
   EXPECT_EQ(number_at(72), s.motion[at(body.nodes.begin + 1)].position.x);
   EXPECT_EQ(number_at(16 * 72), s.acceleration[at(body.nodes.begin)].linear.x);
@@ -156,12 +159,16 @@ TEST(state_bytes, the_layout_is_the_documented_one) {
   const std::size_t sides = rows + 18U * 12U * 8U;
   EXPECT_EQ(std::to_integer<int>(bytes[sides]), 4);
   EXPECT_EQ(std::to_integer<int>(bytes[sides + 8]), 2);
-  EXPECT_EQ(std::to_integer<int>(bytes[sides + 16]), body.nodes.begin);
-  EXPECT_EQ(std::to_integer<int>(bytes[sides + 16 + 33 + 4]), 3);
-  EXPECT_EQ(std::to_integer<int>(bytes[sides + 16 + 33 + 8]), 0xFF);
-  EXPECT_EQ(number_at(sides + 16 + 33 + 9 + 8), s.sides[1][1].drag.y);
-  EXPECT_EQ(std::to_integer<int>(bytes[sides + 16 + 4 * 33 + 8]), 1);
-  EXPECT_EQ(number_at(bytes.size() - 88), s.ledger[1].external_work);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 24]), body.nodes.begin);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 24 + 33 + 4]), 3);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 24 + 33 + 8]), 0xFF);
+  EXPECT_EQ(number_at(sides + 24 + 33 + 9 + 8), s.sides[1][1].drag.y);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 24 + 4 * 33 + 8]), 1);
+  EXPECT_EQ(std::to_integer<int>(bytes[sides + 16]), 1);
+  const std::size_t books = sides + 24 + 6 * 33;
+  EXPECT_EQ(std::to_integer<int>(bytes[books]), 1);
+  EXPECT_EQ(number_at(books + 4 + 8), s.pair_books[1][0].energy);
+  EXPECT_EQ(number_at(bytes.size() - 96), s.ledger[1].external_work);
 }
 
 TEST(state_bytes, drag_of_walls_follows_the_accelerations_and_is_part_of_the_hash) {
@@ -169,7 +176,7 @@ TEST(state_bytes, drag_of_walls_follows_the_accelerations_and_is_part_of_the_has
   State from = random_state(m, 6), to = random_state(m, 7);
   ASSERT_EQ(from.wall_drag.size(), 32U * 2U);
   const auto bytes = bytes_of(m, from, 1), other = bytes_of(m, to, 0);
-  ASSERT_EQ(bytes.size(), 16U * (15U + 6U) * 8U + 18U * 12U * 8U + 16U + 6U * 33U + 88U);
+  ASSERT_EQ(bytes.size(), 16U * (15U + 6U) * 8U + 18U * 12U * 8U + 24U + 6U * 33U + 44U + 96U);
   double value{};
   std::memcpy(&value, bytes.data() + 16 * 15 * 8 + 6 * 8 + 3 * 8 + 8, sizeof(value));
   EXPECT_EQ(value, from.wall_drag[2 * (16 + 1) + 1].y);
@@ -218,7 +225,7 @@ TEST(state_bytes, every_used_number_reaches_the_hash) {
   for (std::size_t i = 0; i < 6 * s.acceleration.size(); ++i) {
     EXPECT_TRUE(changed([&](State& o) { flip(numbers(o.acceleration)[i]); }));
   }
-  for (std::size_t i = 0; i < 10 * s.ledger.size(); ++i) {
+  for (std::size_t i = 0; i < 12 * s.ledger.size(); ++i) {
     EXPECT_TRUE(changed([&](State& o) { flip(numbers(o.ledger)[i]); }));
   }
   for (Index e = 0; e < m.element_count(); ++e) {
@@ -235,6 +242,12 @@ TEST(state_bytes, every_used_number_reaches_the_hash) {
   EXPECT_TRUE(changed([](State& o) { o.sides[0].pop_back(); }));
   EXPECT_TRUE(changed([](State& o) { o.edge_sides[1][0].side = -1; }));
   EXPECT_TRUE(changed([](State& o) { o.edge_sides[0].pop_back(); }));
+  for (double PairBook::*const sum :
+       {&PairBook::initial, &PairBook::energy, &PairBook::dissipated, &PairBook::work, &PairBook::work_other}) {
+    EXPECT_TRUE(changed([&](State& o) { flip(o.pair_books[1][0].*sum); }));
+  }
+  EXPECT_TRUE(changed([](State& o) { o.pair_books[0][0].other = 1; }));
+  EXPECT_TRUE(changed([](State& o) { o.pair_books[1].clear(); }));
   EXPECT_TRUE(changed([](State& o) { std::swap(o.ledger[0], o.ledger[1]); }));
 }
 
@@ -295,6 +308,30 @@ TEST(state_bytes, sides_that_the_body_cannot_have_are_refused) {
   EXPECT_EQ(state_hash(m, s), before);
 }
 
+TEST(state_bytes, books_that_the_body_cannot_keep_are_refused) {
+  Model m = two_plates();
+  const State good = random_state(m, 14);
+  State s = random_state(m, 15);
+  const std::uint64_t before = state_hash(m, s);
+  const auto with = [&](Index body, const std::vector<Index>& others) {
+    State state = good;
+    state.pair_books[at(body)].clear();
+    for (const Index other : others) {
+      state.pair_books[at(body)].push_back({other, 0.0, 1.0, 0.0, 0.0, 0.0});
+    }
+    return bytes_of(m, state, body);
+  };
+  EXPECT_FALSE(read_body_bytes(m, with(1, {0}), 1, s)) << "the lower body keeps them";
+  EXPECT_FALSE(read_body_bytes(m, with(0, {-1}), 0, s));
+  EXPECT_FALSE(read_body_bytes(m, with(0, {2}), 0, s));
+  EXPECT_FALSE(read_body_bytes(m, with(0, {1, 0}), 0, s)) << "out of order";
+  EXPECT_FALSE(read_body_bytes(m, with(0, {1, 1}), 0, s)) << "twice";
+  EXPECT_EQ(state_hash(m, s), before);
+  EXPECT_TRUE(read_body_bytes(m, with(0, {0, 1}), 0, s));
+  m.bodies[0].barrier = true;
+  EXPECT_TRUE(read_body_bytes(m, with(1, {0, 1}), 1, s)) << "a barrier keeps none";
+}
+
 TEST(state_bytes, layers_begin_with_the_thickness_alone) {
   const Model m = two_plastic_plates();
   const State s = initial_state(m);
@@ -312,7 +349,7 @@ TEST(state_bytes, layers_follow_the_rows_of_their_block) {
   const State s = random_state(m, 11);
   const auto bytes = bytes_of(m, s, 1);
   const std::size_t nodes = 16U * 15U * 8U, rows = 12U + 11U;
-  ASSERT_EQ(bytes.size(), nodes + 18U * rows * 8U + 16U + 6U * 33U + 88U);
+  ASSERT_EQ(bytes.size(), nodes + 18U * rows * 8U + 24U + 6U * 33U + 44U + 96U);
   const auto number_at = [&](std::size_t offset) {
     double value;
     std::memcpy(&value, bytes.data() + offset, sizeof(value));

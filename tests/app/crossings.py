@@ -4,8 +4,11 @@
 usage: crossings.py PROGRAM
 """
 import json
+import math
 import re
 from pathlib import Path
+
+import h5py
 
 import program
 
@@ -101,6 +104,31 @@ class Crossings(program.Case):
         result = self.fexp("crossings", "run", "--exclude", "plat", "ball")
         self.assertEqual(result.returncode, 2)
         self.assertRegex(result.stderr, '--exclude: .*no body "plat".*cure: did you mean plate')
+
+    def test_damaged_results_are_refused(self):
+        self.run_deck("--out", "run", duration=0.1)
+        results = self.folder / "run/results.vtkhdf"
+        whole = results.read_bytes()
+
+        def spoil(path, value):
+            def change(file):
+                file[path][0] = value
+            return change
+
+        def no_frames(file):
+            file["VTKHDF/Steps"].attrs["NSteps"] = 0
+
+        for change, found in ((no_frames, "there are no frames"),
+                              (spoil("VTKHDF/Connectivity", 10**6), "nodes and bodies make no sense"),
+                              (spoil("VTKHDF/Connectivity", -1), "nodes and bodies make no sense"),
+                              (spoil("fexp/node_body", 77), "nodes and bodies make no sense"),
+                              (spoil("VTKHDF/Points", math.nan), "positions in frame 0 are not finite")):
+            results.write_bytes(whole)
+            with h5py.File(results, "r+") as file:
+                change(file)
+            result = self.fexp("crossings", "run")
+            self.assertEqual((result.returncode, result.stdout), (2, ""), found)
+            self.assertRegex(result.stderr, f"results.vtkhdf: error: .*{found}; cure: ")
 
     def test_what_is_no_result_is_refused(self):
         self.write_deck()

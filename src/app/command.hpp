@@ -23,6 +23,7 @@ extern const Command run_command;
 extern const Command check_command;
 extern const Command info_command;
 extern const Command compare_command;
+extern const Command crossings_command;
 extern const Command bench_command;
 extern const Command reference_command;
 extern const Command cluster_command;

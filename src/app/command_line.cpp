@@ -21,9 +21,9 @@ namespace fexp::app {
 
 namespace {
 
-constexpr std::array commands{&run_command,     &resume_command, &check_command,     &info_command,
-                              &compare_command, &bench_command,  &reference_command, &cluster_command,
-                              &probe_command,   &verify_command, &worker_command};
+constexpr std::array commands{&run_command,     &resume_command,    &check_command,  &info_command,
+                              &compare_command, &crossings_command, &bench_command,  &reference_command,
+                              &cluster_command, &probe_command,     &verify_command, &worker_command};
 
 void complain(const std::string& text) { print_error(fmt::format("fexp: {}\n", text)); }
 

@@ -23,7 +23,7 @@ enum class ExitCode : int {
 /// What each exit code means, as --help prints it.
 inline constexpr std::array<std::pair<ExitCode, std::string_view>, 10> exit_codes{{
     {ExitCode::done, "done"},
-    {ExitCode::different, "compare: the runs differ; verify: a result is not as expected"},
+    {ExitCode::different, "compare: the runs differ; crossings: surfaces cross; verify: a result is not as expected"},
     {ExitCode::wrong_input, "wrong input or command line; nothing was written"},
     {ExitCode::fault, "the run stopped for a physical reason; what came before it is readable"},
     {ExitCode::output, "output could not be written; what came before is readable"},

@@ -122,7 +122,8 @@ Histories::Histories(const io::RunDirectory& directory, const Case& loaded, cons
     : model_(loaded.model),
       energies_(open(directory.history("energies"), energy_columns(loaded.deck.units), mark)),
       momenta_(open(directory.history("momenta"), momenta_columns(loaded.deck.units), mark)),
-      steps_(open(directory.history("steps"), steps_columns(loaded.deck.units), mark)) {
+      steps_(open(directory.history("steps"), steps_columns(loaded.deck.units), mark)),
+      element_history_(model_, loaded.deck.output.elements) {
   const io::UnitNames& units = loaded.deck.units;
   const io::OutputSettings& output = loaded.deck.output;
   for (const model::NamedNodes& set : model_.node_sets) {
@@ -141,6 +142,9 @@ Histories::Histories(const io::RunDirectory& directory, const Case& loaded, cons
   if (!sets_.empty()) {
     nodes_ = open(directory.history("nodes"), nodes_columns(units), mark);
   }
+  if (!element_history_.empty()) {
+    elements_ = open(directory.history("elements"), ElementHistory::columns(units), mark);
+  }
   if (!chosen_.empty()) {
     bodies_ = open(directory.history("bodies"), bodies_columns(units), mark);
   }
@@ -154,7 +158,8 @@ Histories::Histories(const io::RunDirectory& directory, const Case& loaded, cons
 std::vector<Index> Histories::bodies_needed(const Case& loaded) {
   const model::Model& model = loaded.model;
   const io::OutputSettings& output = loaded.deck.output;
-  std::set<Index> bodies;
+  const std::vector<Index> of_elements = ElementHistory(model, output.elements).bodies();
+  std::set<Index> bodies(of_elements.begin(), of_elements.end());
   for (const model::NamedNodes& set : model.node_sets) {
     if (std::ranges::find(output.nodes, set.name) != output.nodes.end()) {
       for (const Index node : set.nodes) {
@@ -182,6 +187,9 @@ void Histories::write(const cluster::Simulation& simulation, const cluster::Epoc
   write_steps(simulation, report);
   write_walls(simulation);
   write_nodes(simulation);
+  if (elements_) {
+    element_history_.write(simulation.state(), *elements_);
+  }
   write_bodies(simulation);
 }
 
@@ -264,7 +272,7 @@ void Histories::write_bodies(const cluster::Simulation& simulation) {
 
 std::vector<io::CsvWriter*> Histories::files() {
   std::vector<io::CsvWriter*> all{&energies_, &momenta_, &steps_};
-  for (std::optional<io::CsvWriter>* file : {&walls_, &nodes_, &bodies_}) {
+  for (std::optional<io::CsvWriter>* file : {&walls_, &nodes_, &elements_, &bodies_}) {
     if (*file) {
       all.push_back(&**file);
     }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/element_history.hpp"
 #include "app/load.hpp"
 #include "app/output_mark.hpp"
 #include "cluster/simulation.hpp"
@@ -14,7 +15,7 @@
 namespace fexp::app {
 
 /// The run's CSV files: energies, momenta and steps of the whole model, and where the deck asks for them forces of
-/// rigid walls, motions of nodes and of bodies. Every row begins with step and time.
+/// rigid walls, motions of nodes and of bodies, and what elements bear. Every row begins with step and time.
 class Histories {
  public:
   /// Creates the files, or goes on where `mark` says.
@@ -25,7 +26,7 @@ class Histories {
 
   /// Takes note of what an epoch did; the next row of steps.csv tells of all epochs since the row before.
   void add(const cluster::EpochReport& report);
-  /// One row (or one for each node and body) of the present state in every file.
+  /// One row (or one for each node, element and body) of the present state in every file.
   void write(const cluster::Simulation& simulation, const cluster::EpochReport& report);
   void flush();
   /// Puts all rows so far on the disk.
@@ -49,9 +50,11 @@ class Histories {
   io::CsvWriter steps_;
   std::optional<io::CsvWriter> walls_;
   std::optional<io::CsvWriter> nodes_;
+  std::optional<io::CsvWriter> elements_;
   std::optional<io::CsvWriter> bodies_;
   std::vector<const model::NamedNodes*> sets_;  ///< Whose nodes are written
-  std::vector<Index> chosen_;                   ///< Bodies that are written, ascending
+  ElementHistory element_history_;
+  std::vector<Index> chosen_;  ///< Bodies that are written, ascending
   // Since the last row of steps.csv.
   std::int64_t searches_{};
   std::int64_t rollbacks_{};

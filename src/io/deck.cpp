@@ -162,12 +162,16 @@ void check_output(const OutputSettings& output, const model::Model& model, Error
   for (const model::NamedNodes& set : model.node_sets) {
     sets.push_back(set.name);
   }
-  for (const std::string& name : output.nodes) {
-    if (std::find(sets.begin(), sets.end(), name) == sets.end()) {
-      errors.add(output.place, fmt::format("output.nodes names node set \"{}\", which is not there", name),
-                 model::name_list(sets), "define it or correct the name");
+  const auto check = [&](const char* key, const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      if (std::find(sets.begin(), sets.end(), name) == sets.end()) {
+        errors.add(output.place, fmt::format("output.{} names node set \"{}\", which is not there", key, name),
+                   model::name_list(sets), "define it or correct the name");
+      }
     }
-  }
+  };
+  check("nodes", output.nodes);
+  check("elements", output.elements);
   static_cast<void>(model::BodyNames(model).find(output.bodies, output.place, "output.bodies", errors));
 }
 

@@ -27,9 +27,10 @@ struct OutputSettings {
       -1.0};  ///< Between frames of the results file [time]; negative: duration / 50, or ten steps if longer
   double history_interval{
       -1.0};  ///< Between rows of the histories [time]; negative: duration / 500, or ten steps if longer
-  std::vector<std::string> nodes;   ///< Node sets whose nodes' motions are written
-  std::vector<std::string> bodies;  ///< Bodies whose energies and motions are written
-  int deflate{0};                   ///< Compression of the results file, 0 to 9
+  std::vector<std::string> nodes;     ///< Node sets whose nodes' motions are written
+  std::vector<std::string> elements;  ///< Node sets; elements with all nodes in one are written
+  std::vector<std::string> bodies;    ///< Bodies whose energies and motions are written
+  int deflate{0};                     ///< Compression of the results file, 0 to 9
   Place place;
 
   static constexpr Range deflate_range{0.0, 9.0, true, true, "0 to 9"};
@@ -41,6 +42,10 @@ struct OutputSettings {
             "Time between rows of the histories; when left out duration / 500, or about ten steps if longer.",
             &OutputSettings::history_interval, positive},
       Field{"nodes", "-", "Node sets whose nodes' motions are written as histories.", &OutputSettings::nodes},
+      Field{"elements", "-",
+            "Node sets; of the elements that have all their nodes in one, forces, moments and stresses are written as "
+            "histories.",
+            &OutputSettings::elements},
       Field{"bodies", "-", "Bodies whose energies, momenta and centres are written as histories.",
             &OutputSettings::bodies},
       Field{"deflate", "-", "Compression of the results file: 0 (none) to 9.", &OutputSettings::deflate, deflate_range},

@@ -59,7 +59,8 @@ struct Selection {
   std::vector<std::pair<std::string, std::string>> rows;
 };
 
-Selection selection_of(const std::string& column, const std::string& set, const std::string& body, int node) {
+Selection selection_of(const std::string& column, const std::string& set, const std::string& body, int node,
+                       int element) {
   Selection selection{column, {}};
   if (!set.empty()) {
     selection.rows.emplace_back("set", set);
@@ -67,18 +68,21 @@ Selection selection_of(const std::string& column, const std::string& set, const 
   if (!body.empty()) {
     selection.rows.emplace_back("body", body);
   }
-  if (node != Expectation::any_node) {
+  if (node != Expectation::any) {
     selection.rows.emplace_back("node", std::to_string(node));
+  }
+  if (element != Expectation::any) {
+    selection.rows.emplace_back("element", std::to_string(element));
   }
   return selection;
 }
 
-Selection minuend(const Expectation& e) { return selection_of(e.column, e.set, e.body, e.node); }
+Selection minuend(const Expectation& e) { return selection_of(e.column, e.set, e.body, e.node, e.element); }
 
 Selection subtrahend(const Expectation& e) {
   const Subtrahend& m = *e.minus;
   return selection_of(m.column.empty() ? e.column : m.column, m.set.empty() ? e.set : m.set,
-                      m.body.empty() ? e.body : m.body, m.node.value_or(e.node));
+                      m.body.empty() ? e.body : m.body, m.node.value_or(e.node), m.element.value_or(e.element));
 }
 
 /// One value from those of a moment.
@@ -145,7 +149,7 @@ Course course_of(const Expectation& e, const Selection& selection, const CsvTabl
   close();
   if (course.empty()) {
     errors.add(e.place, fmt::format("expect \"{}\": no row of {}.csv is chosen", e.name, e.history),
-               "rows of the set, body and node between the times",
+               "rows of the set, body, node and element between the times",
                "name the set or body under [output], or correct the selection");
   }
   return course;

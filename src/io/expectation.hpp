@@ -36,32 +36,35 @@ struct Subtrahend {
   std::string set;
   std::string body;
   std::optional<int> node;
+  std::optional<int> element;
 
   static constexpr auto fields = std::tuple{
       Field{"column", "-", "The column, where it is another one.", &Subtrahend::column},
       Field{"set", "-", "The node set, where it is another one.", &Subtrahend::set},
       Field{"body", "-", "The body, where it is another one.", &Subtrahend::body},
       Field{"node", "-", "The node, where it is another one.", &Subtrahend::node, non_negative},
+      Field{"element", "-", "The element, where it is another one.", &Subtrahend::element, non_negative},
   };
 };
 
 /// What a run is expected to give: a number taken from one column of a history, and a reference for it. "fexp verify"
 /// runs the deck and holds one against the other; a plain run takes no notice.
 struct Expectation {
-  static constexpr std::array<std::string_view, 6> histories{"energies", "momenta", "steps",
-                                                             "planes",   "nodes",   "bodies"};
+  static constexpr std::array<std::string_view, 7> histories{"energies", "momenta",  "steps", "planes",
+                                                             "nodes",    "elements", "bodies"};
   static constexpr std::array<std::string_view, 4> ways_over_rows{"mean", "sum", "smallest", "largest"};
   static constexpr std::array<std::string_view, 10> ways_over_time{
       "first", "last", "smallest", "largest", "farthest", "time_of_farthest", "mean", "at", "crossing", "period"};
-  /// No label of a node is so low.
-  static constexpr int any_node = -1;
+  /// No label is so low.
+  static constexpr int any = -1;
 
   std::string name;
   std::string history{"nodes"};
   std::string column;
   std::string set;
   std::string body;
-  int node{any_node};
+  int node{any};
+  int element{any};
   std::string over_rows{"mean"};
   std::optional<Subtrahend> minus;
   bool relative_to_first{false};
@@ -87,6 +90,7 @@ struct Expectation {
       Field{"set", "-", "Only rows of this node set.", &Expectation::set},
       Field{"body", "-", "Only rows of this body.", &Expectation::body},
       Field{"node", "-", "Only rows of the node with this label.", &Expectation::node, non_negative},
+      Field{"element", "-", "Only rows of the element with this label.", &Expectation::element, non_negative},
       Field{"over_rows", "-", "What becomes of several rows at the same time.", &Expectation::over_rows,
             Choices(ways_over_rows)},
       Field{"minus", "-", "Other rows of the same history, whose values are subtracted.", &Expectation::minus},

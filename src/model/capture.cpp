@@ -2,8 +2,8 @@
 #include "model/capture.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "model/element_stresses.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::model {
@@ -34,53 +34,28 @@ void capture_nodes(const Model& model, const State& state, std::span<const Vec3d
   });
 }
 
-/// What points through the thickness know better than the resultants.
-void capture_layers(const Model& model, const State& state, Index element, Frame& frame) {
-  const std::size_t e = at(element);
-  const auto row = [&](Index r) { return layer_value(model, state, element, r); };
-  const auto stress_at = [&](Index point) {
-    const Index first = physics::layer_points + point * physics::point_rows;
-    const double mean = 0.5 * row(first + physics::point_sum), half = 0.5 * row(first + physics::point_difference);
-    return static_cast<float>(von_mises(mean + half, mean - half, row(first + physics::point_shear)));
-  };
-  const Index points = model.section_of(element).layered.points.count;
-  double strain = 0.0;
-  for (Index p = 0; p < points; ++p) {
-    strain = std::max(strain, row(physics::layer_points + p * physics::point_rows + physics::point_strain));
-  }
-  frame.von_mises_top[e] = stress_at(points - 1);
-  frame.von_mises_bottom[e] = stress_at(0);
-  frame.thickness[e] = static_cast<float>(row(physics::layer_thickness));
-  frame.plastic_strain[e] = static_cast<float>(strain);
-  frame.deleted[e] = is_deleted(model, state.layers.data(), element) ? 1 : 0;
+template <std::size_t N>
+std::array<float, N> single(const std::array<double, N>& values) noexcept {
+  std::array<float, N> result{};
+  std::transform(values.begin(), values.end(), result.begin(), [](double v) { return static_cast<float>(v); });
+  return result;
 }
 
 void capture_element(const Model& model, const State& state, Index element, Frame& frame) {
   const std::size_t e = at(element);
-  const auto row = [&](ElementRow r) { return element_value(model, state, element, r); };
-  const double t = model.section_of(element).thickness;
-  const std::array<double, 3> n{row(row_nxx), row(row_nyy), row(row_nxy)};
-  const std::array<double, 3> m{row(row_mxx), row(row_myy), row(row_mxy)};
-  std::array<double, 3> top{};
-  std::array<double, 3> bottom{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double membrane = n[i] / t;
-    const double bending = 6.0 * m[i] / (t * t);
-    top[i] = membrane + bending;
-    bottom[i] = membrane - bending;
-    frame.membrane_force[e][i] = static_cast<float>(n[i]);
-    frame.bending_moment[e][i] = static_cast<float>(m[i]);
-  }
-  frame.shear_force[e] = {static_cast<float>(row(row_qxz)), static_cast<float>(row(row_qyz))};
-  frame.von_mises_top[e] = static_cast<float>(von_mises(top[0], top[1], top[2]));
-  frame.von_mises_bottom[e] = static_cast<float>(von_mises(bottom[0], bottom[1], bottom[2]));
-  frame.energy_density[e] = static_cast<float>(row(row_energy) / (model.reference_area[e] * t));
-  frame.thickness[e] = static_cast<float>(t);
-  frame.plastic_strain[e] = 0.0F;
-  frame.deleted[e] = 0;
-  if (model.blocks[at(model.element_block[e])].layer_row != no_index) {
-    capture_layers(model, state, element, frame);
-  }
+  const ElementStresses stresses = element_stresses(model, state, element);
+  const auto& [top_xx, top_yy, top_xy] = stresses.top;
+  const auto& [bottom_xx, bottom_yy, bottom_xy] = stresses.bottom;
+  frame.membrane_force[e] = single(stresses.membrane_force);
+  frame.bending_moment[e] = single(stresses.bending_moment);
+  frame.shear_force[e] = single(stresses.shear_force);
+  frame.von_mises_top[e] = static_cast<float>(von_mises(top_xx, top_yy, top_xy));
+  frame.von_mises_bottom[e] = static_cast<float>(von_mises(bottom_xx, bottom_yy, bottom_xy));
+  const double volume = model.reference_area[e] * model.section_of(element).thickness;
+  frame.energy_density[e] = static_cast<float>(element_value(model, state, element, row_energy) / volume);
+  frame.thickness[e] = static_cast<float>(stresses.thickness);
+  frame.plastic_strain[e] = static_cast<float>(stresses.plastic_strain);
+  frame.deleted[e] = stresses.deleted ? 1 : 0;
 }
 
 void capture_elements(const Model& model, const State& state, std::span<const Index> island_of_body, Frame& frame) {
@@ -105,10 +80,6 @@ void capture_elements(const Model& model, const State& state, std::span<const In
 }
 
 }  // namespace
-
-double von_mises(double sxx, double syy, double sxy) noexcept {
-  return std::sqrt(sxx * sxx - sxx * syy + syy * syy + 3.0 * sxy * sxy);
-}
 
 void capture_into(const Model& model, const State& state, std::span<const Vec3d> contact_force,
                   std::span<const Index> island_of_body, Frame& frame) {

@@ -42,9 +42,6 @@ struct Frame {
   std::vector<Index> island;  ///< no_index for a barrier
 };
 
-/// Von Mises stress of a plane-stress state [force/length^2].
-[[nodiscard]] double von_mises(double sxx, double syy, double sxy) noexcept;
-
 /// Copies the present state into `frame`, whose buffers are used again. `contact_force` has shape [nodes] [force];
 /// `island_of_body` has shape [bodies]. Either may be empty: then forces are zero and islands no_index.
 void capture_into(const Model& model, const State& state, std::span<const Vec3d> contact_force,

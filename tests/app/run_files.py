@@ -83,6 +83,21 @@ class Histories(program.Case):
         self.assertAlmostEqual(float(bodies[0]["centre_x"]), -9.0, delta=1e-12)
         self.assertAlmostEqual(float(bodies[0]["centre_z"]), 1.0, delta=1e-12)
 
+    def test_elements_within_a_node_set_are_written(self):
+        text = program.deck(duration=0.2).replace('nodes = ["rim"]', 'elements = ["rim"]')
+        (self.folder / "deck.toml").write_text(text, encoding="utf-8")
+        self.assertEqual(self.fexp("run", "deck.toml", "--quiet", "--out", "other").returncode, 0)
+        self.assertFalse((self.folder / "other/nodes.csv").exists())
+        rows, header = self.table("other/elements.csv")
+        self.assertEqual(header[:5], ["step", "time [ms]", "set", "body", "element"])
+        self.assertIn("stress_top_xy [kN/mm^2]", header)
+        self.assertIn("shear_force_yz [kN/mm]", header)
+        first = [row for row in rows if row["step"] == "0"]
+        # The triangles that cut off two corners of a plate have all their nodes on its rim.
+        self.assertEqual(len(first), 2 * 2)
+        self.assertEqual({row["body"] for row in rows}, {"plate[0,0,0]", "plate[1,0,0]"})
+        self.assertEqual({(row["thickness"], row["deleted"]) for row in first}, {("1", "0")})
+
     def test_the_largest_errors_of_the_rows_are_not_above_the_summary_s(self):
         rows = self.table("here/energies.csv")[0]
         self.assertGreater(float(rows[-1]["barrier"]) + float(rows[-1]["internal"]), 0.0, "nothing has touched")

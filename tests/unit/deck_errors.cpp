@@ -253,18 +253,22 @@ TEST(deck_errors, output_of_sets_and_bodies_that_are_not_there_is_told_at_its_se
       "[[section]]\nname = \"s\"\nmaterial = \"m\"\nthickness = 0.1\n[[body]]\nname = \"ball\"\n"
       "section = \"s\"\nmesh = {kind = \"cubed_sphere\", radius = 1}\n"
       "array = {count = [2, 1, 1], pitch = [3, 0, 0]}\n[output]\n"
-      "nodes = [\"all\", \"rim\"]\nbodies = [\"ball\", \"ball[1,0,0]\", \"ball[2,0,0]\"]\n",
+      "nodes = [\"all\", \"rim\"]\nelements = [\"hub\", \"all\"]\nbodies = [\"ball\", \"ball[1,0,0]\", "
+      "\"ball[2,0,0]\"]\n",
       "d", errors);
   InputFiles files;
   const std::vector<model::Mesh> meshes = load_meshes(deck, "", files, errors);
   const model::Model model = model::build_model(deck.description, meshes, errors);
   ASSERT_TRUE(errors.empty()) << errors.errors()[0].text();
   check_output(deck.output, model, errors);
-  ASSERT_EQ(errors.size(), 2U);
+  ASSERT_EQ(errors.size(), 3U);
   EXPECT_EQ(errors.errors()[0].text(),
             "d:17:1: error: output.nodes names node set \"rim\", which is not there; accepted: all; cure: define it or "
             "correct the name");
-  EXPECT_NE(errors.errors()[1].text().find("d:17:1: error: output.bodies names body \"ball[2,0,0]\""),
+  EXPECT_EQ(errors.errors()[1].text(),
+            "d:17:1: error: output.elements names node set \"hub\", which is not there; accepted: all; cure: define it "
+            "or correct the name");
+  EXPECT_NE(errors.errors()[2].text().find("d:17:1: error: output.bodies names body \"ball[2,0,0]\""),
             std::string::npos);
 }
 

@@ -84,15 +84,33 @@ TEST(expectation, takes_rows_between_two_times) {
 
 TEST(expectation, subtracts_other_rows_of_the_same_times) {
   Expectation e = of_tip("mean", "last");
-  e.minus = Subtrahend{"", "root", "", std::nullopt};
+  e.minus = Subtrahend{"", "root", "", std::nullopt, {}};
   EXPECT_EQ(number(e), 4.0 - 70.0);
-  e.minus = Subtrahend{"", "", "", 7};
+  e.minus = Subtrahend{"", "", "", 7, {}};
   EXPECT_EQ(number(e), 4.0 - 2.0);
-  e.minus = Subtrahend{"node", "", "", std::nullopt};
+  e.minus = Subtrahend{"node", "", "", std::nullopt, {}};
   EXPECT_EQ(number(e), 4.0 - 8.0);
-  e.minus = Subtrahend{"", "top", "", std::nullopt};
+  e.minus = Subtrahend{"", "top", "", std::nullopt, {}};
   ErrorList errors;
   EXPECT_TRUE(std::isnan(expected_number(e, nodes, errors)));
+  EXPECT_EQ(errors.size(), 1U);
+}
+
+TEST(expectation, chooses_an_element_by_its_label) {
+  const CsvTable elements{{"step", "time", "set", "body", "element", "thickness"},
+                          {{"0", "0", "all", "b", "3", "1"}, {"0", "0", "all", "b", "4", "5"}}};
+  Expectation e;
+  e.column = "thickness";
+  e.history = "elements";
+  ErrorList errors;
+  EXPECT_EQ(expected_number(e, elements, errors), 3.0);
+  e.element = 4;
+  EXPECT_EQ(expected_number(e, elements, errors), 5.0);
+  e.minus = Subtrahend{"", "", "", std::nullopt, 3};
+  EXPECT_EQ(expected_number(e, elements, errors), 4.0);
+  EXPECT_TRUE(errors.empty());
+  e.element = 5;
+  EXPECT_TRUE(std::isnan(expected_number(e, elements, errors)));
   EXPECT_EQ(errors.size(), 1U);
 }
 
@@ -183,7 +201,7 @@ TEST(expectation, chooses_rows_by_set_body_and_node) {
   e.node = 9;
   EXPECT_EQ(number(e), 6.0);
   e.set = "";
-  e.node = Expectation::any_node;
+  e.node = Expectation::any;
   EXPECT_EQ(number(e), 26.0);
   e.body = "c";
   ErrorList errors;

@@ -15,6 +15,7 @@
 #include "io/vtkhdf_reader.hpp"
 #include "io/xdmf.hpp"
 #include "model/capture.hpp"
+#include "model/element_stresses.hpp"
 #include "parallel/parallel.hpp"
 #include "support/file_size_limit.hpp"
 #include "support/hand_model.hpp"
@@ -60,6 +61,28 @@ TEST(capture, surface_stress_of_pure_bending_is_six_m_over_t_squared) {
   EXPECT_FLOAT_EQ(stretched.von_mises_top[0], 2.0F * bent.von_mises_top[0]);
   EXPECT_FLOAT_EQ(stretched.von_mises_bottom[0], 0.0F);
   EXPECT_EQ(stretched.von_mises_top[1], 0.0F) << "the other element has no stress";
+}
+
+TEST(element_stresses, are_membrane_and_bending_on_both_sides) {
+  const model::Model model = test::strips(1, 1);
+  model::State state = model::initial_state(model);
+  const double t = model.sections[0].thickness;
+  const auto set = [&](model::ElementRow row, double value) {
+    state.history[at(row) * at(model::block_lanes)] = value;
+  };
+  set(model::row_nxx, 2.0 * t);
+  set(model::row_nyy, -3.0 * t);
+  set(model::row_mxy, 0.5 * t * t);
+  set(model::row_qyz, 7.0);
+  const model::ElementStresses stresses = model::element_stresses(model, state, 0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_DOUBLE_EQ(stresses.top[i], (std::array{2.0, -3.0, 3.0}[i]));
+    EXPECT_DOUBLE_EQ(stresses.bottom[i], (std::array{2.0, -3.0, -3.0}[i]));
+  }
+  EXPECT_EQ(stresses.shear_force[1], 7.0);
+  EXPECT_EQ(stresses.thickness, t);
+  EXPECT_EQ(stresses.plastic_strain, 0.0);
+  EXPECT_FALSE(stresses.deleted);
 }
 
 TEST(capture, von_mises_of_pure_shear_is_root_three_times_the_shear) {

@@ -64,6 +64,7 @@ normal = [0, 0, 1]
 results_interval = 0.007
 history_interval = 0.0019
 nodes = ["some"]
+elements = ["some"]
 bodies = ["left"]
 )";
 
@@ -226,8 +227,8 @@ void expect_same_results(const fs::path& one, const fs::path& other) {
 
 /// All files but the log, which has times of day.
 void expect_same_files(const fs::path& one, const fs::path& other) {
-  for (const char* name : {"energies.csv", "momenta.csv", "steps.csv", "planes.csv", "nodes.csv", "bodies.csv",
-                           "hashes.csv", "results.xdmf2"}) {
+  for (const char* name : {"energies.csv", "momenta.csv", "steps.csv", "planes.csv", "nodes.csv", "elements.csv",
+                           "bodies.csv", "hashes.csv", "results.xdmf2"}) {
     EXPECT_EQ(io::read_whole(one / name), io::read_whole(other / name)) << name;
   }
   expect_same_results(one / "results.vtkhdf", other / "results.vtkhdf");

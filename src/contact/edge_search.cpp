@@ -27,8 +27,9 @@ void EdgeSearch::assign(const model::Model& model, std::span<const Index> bodies
     for (Index b = body.blocks.begin; b < body.blocks.end; ++b) {
       const model::ElementBlock& block = model.blocks[at(b)];
       for (Index edge = 3 * block.first; edge < 3 * (block.first + block.count); ++edge) {
-        const Index other = model.neighbour[at(edge / 3)][static_cast<std::size_t>(edge % 3)];
-        if (other == no_index || edge / 3 < other) {
+        bool lowest = true;
+        model::for_each_at_edge(model, edge, [&](Index other) { lowest = lowest && edge / 3 < other; });
+        if (lowest) {
           NearEdge& near = edges_.emplace_back();
           near.reach = edge_reach(model, edge) * (1.0 + distance_rounding);
           near.node = ends_of(model, edge);

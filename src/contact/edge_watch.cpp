@@ -43,11 +43,11 @@ EdgeWatch::Pair EdgeWatch::pair_at(const Positions& x, Index first, Index second
 
 /// Whether an element at the edge is left.
 bool EdgeWatch::is_there(Index edge) const {
-  if (now_.has(model_, edge / 3)) {
-    return true;
+  bool there = now_.has(model_, edge / 3);
+  if (!there) {
+    model::for_each_at_edge(model_, edge, [&](Index other) { there = there || now_.has(model_, other); });
   }
-  const Index other = model_.neighbour[at(edge / 3)][static_cast<std::size_t>(edge % 3)];
-  return other != no_index && now_.has(model_, other);
+  return there;
 }
 
 /// How far the second edge has come in this step against the first one where they are closest [length].
@@ -73,26 +73,29 @@ int EdgeWatch::side_of(const Pair& p, const model::EdgeSide* known) const {
 }
 
 /// `corner`: the nodes that Sharpness::corner counts.
-physics::Sharpness EdgeWatch::sharpness_of(const Pair& p, int side, std::array<Index, 4>& corner) const {
+physics::Sharpness EdgeWatch::sharpness_of(const Pair& p, int side, Corners& corner) const {
+  static_assert(physics::most_at_edge >= model::most_at_edge);
   physics::CrossingEdges edges;
   for (std::size_t end = 0; end < 4; ++end) {
     edges.end[end] = now_(p.node[end]);
   }
   for (std::size_t which = 0; which < 2; ++which) {
-    const Index edge = which == 0 ? p.first : p.second, own = edge / 3;
-    for (const Index element : {own, model_.neighbour[at(own)][static_cast<std::size_t>(edge % 3)]}) {
-      if (element == no_index || !now_.has(model_, element)) {
-        continue;
+    const Index edge = which == 0 ? p.first : p.second;
+    const auto take = [&](Index element) {
+      if (!now_.has(model_, element)) {
+        return;
       }
       for (const Index n : model_.triangle[at(element)]) {
         if (n != p.node[2 * which] && n != p.node[2 * which + 1]) {
           const auto triangle = static_cast<std::size_t>(edges.triangles[which]);
-          corner[2 * which + triangle] = n;
+          corner[physics::most_at_edge * which + triangle] = n;
           edges.corner[which][triangle] = now_(n);
         }
       }
       ++edges.triangles[which];
-    }
+    };
+    take(edge / 3);
+    model::for_each_at_edge(model_, edge, take);
   }
   return physics::sharpness_of(edges, p.lines, side);
 }
@@ -200,7 +203,7 @@ void EdgeWatch::push(model::EdgeSide& known, const Pair& p, const Vec3d& drag_be
   if (!(depth.value > 0.0)) {
     return;
   }
-  std::array<Index, 4> corner{no_index, no_index, no_index, no_index};
+  Corners corner{};  // Those that are counted are set
   const physics::Sharpness sharpness = sharpness_of(p, known.side, corner);
   if (!(sharpness.part > 0.0)) {
     return;

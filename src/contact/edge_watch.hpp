@@ -6,6 +6,7 @@
 
 #include "contact/node_watch.hpp"
 #include "contact/surface.hpp"
+#include "model/branches.hpp"
 #include "physics/closest_lines.hpp"
 #include "physics/crossing_edges.hpp"
 
@@ -73,11 +74,13 @@ class EdgeWatch {
     [[nodiscard]] int side() const noexcept { return lines.gap < 0.0 ? -1 : 1; }
   };
 
+  using Corners = std::array<Index, 2 * physics::most_at_edge>;
+
   [[nodiscard]] Pair pair_at(const Positions& x, Index first, Index second) const;
   [[nodiscard]] bool is_there(Index edge) const;
   [[nodiscard]] Vec3d way_of(const Pair& pair) const;
   [[nodiscard]] int side_of(const Pair& pair, const model::EdgeSide* known) const;
-  [[nodiscard]] physics::Sharpness sharpness_of(const Pair& pair, int side, std::array<Index, 4>& corner) const;
+  [[nodiscard]] physics::Sharpness sharpness_of(const Pair& pair, int side, Corners& corner) const;
   [[nodiscard]] double most_distance(const Pair& pair) const;
   [[nodiscard]] Place place_at(const Pair& pair, double first, double second, double most_distance) const;
   [[nodiscard]] double reach_of(const Pair& pair) const;

@@ -214,14 +214,14 @@ void NodeWatch::decide_sides(std::span<const model::ContactSide> memory) {
   }
   // Where a neighbour is closer, its side is what counts, and so on to the closest of all: a node that goes round a rim
   // takes all others along. A closer neighbour that is not watched is the node's own element, and until the node stands
-  // before the face itself there is nothing to remember.
+  // before the face itself there is nothing to remember. Where the element ends at others, their sides are not its own.
   const auto watched = [&](Index element) {
     const auto found = std::lower_bound(watched_.begin(), watched_.end(), element,
                                         [](const Watched& w, Index wanted) { return w.element < wanted; });
     return found != watched_.end() && found->element == element ? &*found : nullptr;
   };
   for (Watched& w : watched_) {
-    if (w.acts) {
+    if (w.acts || !goes_on(model_, w.element, w.closest.feature, w.closer)) {
       continue;
     }
     const Watched* closest = watched(w.closer);
@@ -230,7 +230,8 @@ void NodeWatch::decide_sides(std::span<const model::ContactSide> memory) {
       continue;
     }
     while (closest != nullptr && !closest->acts) {
-      closest = watched(closest->closer);
+      const bool same_side = goes_on(model_, closest->element, closest->closest.feature, closest->closer);
+      closest = same_side ? watched(closest->closer) : nullptr;
     }
     if (closest != nullptr) {
       w.side = closest->side;

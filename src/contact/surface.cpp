@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact/surface.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fexp::contact {
@@ -9,16 +10,16 @@ namespace {
 
 using physics::Feature;
 
-/// Whether edge `a` of an element has nothing on its other side.
-bool is_free_edge(const model::Model& model, const Positions& x, Index element, std::size_t a) noexcept {
+/// Whether nothing goes on from an element over its edge `a`.
+bool ends_at_edge(const model::Model& model, const Positions& x, Index element, std::size_t a) noexcept {
   const Index other = model.neighbour[at(element)][a];
   return other == no_index || !x.has(model, other);
 }
 
-bool has_free_edge_at(const model::Model& model, const Positions& x, Index element, Index node) noexcept {
+bool ends_at_node(const model::Model& model, const Positions& x, Index element, Index node) noexcept {
   const auto& t = model.triangle[at(element)];
   for (std::size_t a = 0; a < 3; ++a) {
-    if (t[a] == node && (is_free_edge(model, x, element, a) || is_free_edge(model, x, element, (a + 2) % 3))) {
+    if (t[a] == node && (ends_at_edge(model, x, element, a) || ends_at_edge(model, x, element, (a + 2) % 3))) {
       return true;
     }
   }
@@ -49,7 +50,7 @@ double view_at_outermost_edge(const model::Model& model, Normals& normals, Index
     }
   };
   look_along_edges(element);
-  for_each_sharing(model, x, element, closest.feature, look_along_edges);
+  for_each_going_on(model, x, element, closest.feature, look_along_edges);
   return steepest;
 }
 
@@ -70,16 +71,28 @@ bool Positions::has_left_at(const model::Model& model, Index node) const noexcep
 
 bool is_on_rim(const model::Model& model, const Positions& x, Index element, Feature feature) noexcept {
   if (physics::is_edge(feature)) {
-    return is_free_edge(model, x, element, physics::number_of(feature));
+    return ends_at_edge(model, x, element, physics::number_of(feature));
   }
   if (!physics::is_corner(feature)) {
     return false;
   }
   const Index node = model.triangle[at(element)][physics::number_of(feature)];
-  bool rim = has_free_edge_at(model, x, element, node);
-  for_each_sharing(model, x, element, feature,
-                   [&](Index other) { rim = rim || has_free_edge_at(model, x, other, node); });
+  bool rim = ends_at_node(model, x, element, node);
+  for_each_going_on(model, x, element, feature, [&](Index other) { rim = rim || ends_at_node(model, x, other, node); });
   return rim;
+}
+
+bool goes_on(const model::Model& model, Index element, Feature feature, Index other) noexcept {
+  if (model.corner_fan.empty()) {
+    return true;
+  }
+  const std::size_t own = physics::number_of(feature);
+  if (physics::is_edge(feature)) {
+    return model.neighbour[at(element)][own] == other;
+  }
+  const auto &t = model.triangle[at(element)], &s = model.triangle[at(other)];
+  const auto theirs = static_cast<Index>(std::find(s.begin(), s.end(), t[own]) - s.begin());
+  return model.corner_fan[at(3 * element) + own] == model.corner_fan[at(3 * other + theirs)];
 }
 
 View view_of(const model::Model& model, Normals& normals, Index element,
@@ -92,7 +105,7 @@ View view_of(const model::Model& model, Normals& normals, Index element,
     highest = view > highest ? view : highest;
   };
   look_from(element);
-  for_each_sharing(model, normals.positions(), element, closest.feature, look_from);
+  for_each_going_on(model, normals.positions(), element, closest.feature, look_from);
   // Where all views are strictly of one sign, the outermost edge's is, too.
   if (physics::is_corner(closest.feature) && !(lowest > 0.0) && !(highest < 0.0)) {
     steepest = view_at_outermost_edge(model, normals, element, closest);

@@ -41,28 +41,57 @@ struct Positions {
 }
 
 /// Calls visit(other) for every other element that shares the feature on which a closest point of `element` lies: none
-/// for the face, the neighbour across an edge, all elements round a corner in ascending order. Deleted ones are not
-/// there.
+/// for the face, those at an edge, all elements round a corner in ascending order. Deleted ones are not there.
 template <class Visit>
 void for_each_sharing(const model::Model& model, const Positions& x, Index element, physics::Feature feature,
                       const Visit& visit) {
+  const auto visit_left = [&](Index other) {
+    if (x.has(model, other)) {
+      visit(other);
+    }
+  };
   if (physics::is_edge(feature)) {
+    model::for_each_at_edge(model, 3 * element + static_cast<Index>(physics::number_of(feature)), visit_left);
+  } else if (physics::is_corner(feature)) {
+    const Index node = model.triangle[at(element)][physics::number_of(feature)];
+    for (Index c = model.corner_start[at(node)]; c < model.corner_start[at(node) + 1]; ++c) {
+      const Index other = model.corner[at(c)] / 3;
+      if (other != element) {
+        visit_left(other);
+      }
+    }
+  }
+}
+
+/// The same for those alone that go on from the element over the feature, and agree with it about the side. Where more
+/// than two elements meet at an edge, others end there.
+template <class Visit>
+void for_each_going_on(const model::Model& model, const Positions& x, Index element, physics::Feature feature,
+                       const Visit& visit) {
+  if (model.corner_fan.empty()) {
+    for_each_sharing(model, x, element, feature, visit);
+  } else if (physics::is_edge(feature)) {
     const Index other = model.neighbour[at(element)][physics::number_of(feature)];
     if (other != no_index && x.has(model, other)) {
       visit(other);
     }
   } else if (physics::is_corner(feature)) {
-    const Index node = model.triangle[at(element)][physics::number_of(feature)];
+    const auto own = static_cast<Index>(physics::number_of(feature));
+    const Index node = model.triangle[at(element)][at(own)], fan = model.corner_fan[at(3 * element + own)];
     for (Index c = model.corner_start[at(node)]; c < model.corner_start[at(node) + 1]; ++c) {
-      const Index other = model.corner[at(c)] / 3;
-      if (other != element && x.has(model, other)) {
+      const Index corner = model.corner[at(c)], other = corner / 3;
+      if (other != element && model.corner_fan[at(corner)] == fan && x.has(model, other)) {
         visit(other);
       }
     }
   }
 }
 
-/// Whether the feature lies on the rim of an open surface, where a node may go round from one side to the other.
+/// Whether `other`, which shares the feature, goes on from the element there.
+[[nodiscard]] bool goes_on(const model::Model& model, Index element, physics::Feature feature, Index other) noexcept;
+
+/// Whether the feature lies on the rim of an open surface, or where the element ends at others, where a node may go
+/// round from one side to the other.
 [[nodiscard]] bool is_on_rim(const model::Model& model, const Positions& x, Index element,
                              physics::Feature feature) noexcept;
 

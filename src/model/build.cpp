@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "model/branches.hpp"
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
 #include "model/build_contact.hpp"
@@ -238,7 +239,7 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   build_curve_areas(model);
   build_walls(description, model);
   build_sections(description, model);
-  const auto groups = build_bodies(description, meshes, model, errors);
+  const BuiltBodies built = build_bodies(description, meshes, model, errors);
   if (!errors.empty()) {
     return model;
   }
@@ -246,7 +247,11 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   CornerRows rows = corner_rows(model.node_count(), model.triangle);
   model.corner_start = std::move(rows.start);
   model.corner = std::move(rows.corner);
-  build_node_sets(description, groups, model, errors);
+  if (built.branched) {
+    model.next_at_edge = edge_rounds(model.triangle);
+    model.corner_fan = corner_fans(model.triangle, model.neighbour);
+  }
+  build_node_sets(description, built.groups, model, errors);
   if (!positions.empty()) {
     model.reference_position.assign(positions.begin(), positions.end());
   }

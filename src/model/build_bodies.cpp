@@ -273,9 +273,10 @@ void check_reach(const BodyDescription& body, const Mesh& mesh, const PlacedMesh
 
 }  // namespace
 
-std::vector<std::vector<NodeGroup>> build_bodies(const Description& description, std::span<const Mesh> meshes,
-                                                 Model& model, ErrorList& errors) {
-  std::vector<std::vector<NodeGroup>> groups(description.bodies.size());
+BuiltBodies build_bodies(const Description& description, std::span<const Mesh> meshes, Model& model,
+                         ErrorList& errors) {
+  BuiltBodies built;
+  built.groups.resize(description.bodies.size());
   double nodes = 0.0, elements = 0.0;
   for (std::size_t b = 0; b < description.bodies.size(); ++b) {
     const auto& array = description.bodies[b].array;
@@ -290,7 +291,7 @@ std::vector<std::vector<NodeGroup>> build_bodies(const Description& description,
                fmt::format("the model would have {:.0f} elements and {:.0f} nodes", elements, nodes),
                fmt::format("at most {} elements and {} nodes", most_elements, most_nodes),
                "use coarser meshes or smaller arrays");
-    return groups;
+    return built;
   }
   reserve(static_cast<std::size_t>(nodes), static_cast<std::size_t>(elements), model);
   for (std::size_t b = 0; b < description.bodies.size(); ++b) {
@@ -318,9 +319,10 @@ std::vector<std::vector<NodeGroup>> build_bodies(const Description& description,
         }
       }
     }
-    groups[b] = std::move(placed.groups);
+    built.groups[b] = std::move(placed.groups);
+    built.branched = built.branched || surface.branched;
   }
-  return groups;
+  return built;
 }
 
 }  // namespace fexp::model

@@ -10,11 +10,15 @@
 
 namespace fexp::model {
 
-/// Appends every copy of every described body: nodes, elements, blocks, sections, initial velocities. Returns the node
-/// groups of each described body's mesh by the numbers that nodes have in the body, shape [described bodies].
-[[nodiscard]] std::vector<std::vector<NodeGroup>> build_bodies(const Description& description,
-                                                               std::span<const Mesh> meshes, Model& model,
-                                                               ErrorList& errors);
+struct BuiltBodies {
+  /// Of each described body's mesh by the numbers that nodes have in the body, shape [described bodies].
+  std::vector<std::vector<NodeGroup>> groups;
+  bool branched{};  ///< More than two triangles meet at some edge
+};
+
+/// Appends every copy of every described body: nodes, elements, blocks, sections, initial velocities.
+[[nodiscard]] BuiltBodies build_bodies(const Description& description, std::span<const Mesh> meshes, Model& model,
+                                       ErrorList& errors);
 
 /// Expands node sets, the set "all" first. `groups` are those that build_bodies returned.
 void build_node_sets(const Description& description, std::span<const std::vector<NodeGroup>> groups, Model& model,

@@ -191,6 +191,10 @@ struct Model {
   // Elements, shape [elements]
   std::vector<std::array<Index, 3>> triangle;   ///< Corner nodes
   std::vector<std::array<Index, 3>> neighbour;  ///< Element across edge (a, a+1), or no_index
+  /// Edges (3 x element + edge) and corners, see edge_rounds and corner_fans; empty unless more than two elements meet
+  /// at some edge.
+  std::vector<Index> next_at_edge;
+  std::vector<Index> corner_fan;
   std::vector<Index> element_block;
   std::vector<Index> element_part;          ///< Part (physical group) index within the body's mesh
   std::vector<double> reference_area;       ///< [length^2]
@@ -243,7 +247,26 @@ struct Model {
   }
   /// True when bodies a and b (which may be the same) can touch by the deck's contact settings.
   [[nodiscard]] bool can_touch(Index a, Index b) const noexcept;
+  /// Whether no other element is at the edge (3 x element + edge).
+  [[nodiscard]] bool is_free_edge(Index edge) const noexcept {
+    return next_at_edge.empty() ? neighbour[at(edge / 3)][at(edge % 3)] == no_index : next_at_edge[at(edge)] == edge;
+  }
 };
+
+/// Calls visit(other) for every other element at the edge (3 x element + edge).
+template <class Visit>
+void for_each_at_edge(const Model& model, Index edge, const Visit& visit) {
+  if (model.next_at_edge.empty()) {
+    const Index other = model.neighbour[at(edge / 3)][at(edge % 3)];
+    if (other != no_index) {
+      visit(other);
+    }
+    return;
+  }
+  for (Index next = model.next_at_edge[at(edge)]; next != edge; next = model.next_at_edge[at(next)]) {
+    visit(next / 3);
+  }
+}
 
 /// Centre of the masses of a body's nodes in the reference configuration [length].
 [[nodiscard]] Vec3d centre_of_mass(const Model& model, const Body& body);

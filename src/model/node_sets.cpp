@@ -61,9 +61,7 @@ void append_selected(const NodeSet& set, const NodeGroup* group, const Model& mo
                      std::vector<Index>& nodes) {
   std::vector<Index> boundary;
   if (set.boundary) {
-    const std::span triangles(model.triangle.begin() + body.elements.begin, at(body.elements.size()));
-    const std::span neighbours(model.neighbour.begin() + body.elements.begin, at(body.elements.size()));
-    boundary = boundary_nodes(triangles, neighbours);
+    boundary = boundary_nodes(std::span(model.triangle.begin() + body.elements.begin, at(body.elements.size())));
   }
   const auto take = [&](Index n) {
     const bool inside = !set.box || Box{set.box->low, set.box->high}.contains(model.reference_position[at(n)]);

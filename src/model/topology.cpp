@@ -9,69 +9,66 @@
 #include <string>
 #include <utility>
 
+#include "model/branches.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::model {
 
 namespace {
 
-/// An edge of a triangle.
-struct EdgeUse {
-  Index low;     ///< The lower one of its nodes
-  Index high;    ///< The higher one
-  Index corner;  ///< 3 x triangle + edge
-
-  [[nodiscard]] bool same_edge(const EdgeUse& other) const noexcept { return low == other.low && high == other.high; }
-};
-
 constexpr Index node_grain = 8192;
 constexpr Index edge_grain = 16384;
 
-/// All edges of all triangles by lower node, higher node and corner: counted into rows of the lower nodes, which are
-/// short and sorted each for itself.
-std::vector<EdgeUse> sorted_edges(std::span<const Triangle> triangles) {
-  const auto nodes_of = [&](std::size_t t, std::size_t e) {
-    return std::minmax(triangles[t][e], triangles[t][(e + 1) % 3]);
-  };
-  Index highest = no_index;
-  for (const Triangle& t : triangles) {
-    highest = std::max({highest, t[0], t[1], t[2]});
-  }
-  std::vector<Index> start(at(highest) + 2, 0);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t e = 0; e < 3; ++e) {
-      ++start[at(nodes_of(t, e).first) + 1];
-    }
-  }
-  for (std::size_t n = 1; n < start.size(); ++n) {
-    start[n] += start[n - 1];
-  }
-  std::vector<EdgeUse> edges(3 * triangles.size());
-  std::vector<Index> next(start.begin(), start.end() - 1);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t e = 0; e < 3; ++e) {
-      const auto [low, high] = nodes_of(t, e);
-      edges[at(next[at(low)]++)] = {low, high, static_cast<Index>(3 * t + e)};
-    }
-  }
-  parallel::for_each(highest + 1, node_grain, [&](Index n) {
-    std::sort(edges.begin() + start[at(n)], edges.begin() + start[at(n) + 1], [](const EdgeUse& x, const EdgeUse& y) {
-      return x.high != y.high ? x.high < y.high : x.corner < y.corner;
-    });
-  });
-  return edges;
-}
-
 std::vector<Triangle> neighbours_across(std::size_t triangles, const std::vector<EdgeUse>& edges) {
   std::vector<Triangle> neighbours(triangles, {no_index, no_index, no_index});
-  parallel::for_each(static_cast<Index>(edges.size()) - 1, edge_grain, [&](Index i) {
-    if (edges[at(i)].same_edge(edges[at(i) + 1])) {
-      const Index a = edges[at(i)].corner, b = edges[at(i) + 1].corner;
+  const auto last = static_cast<Index>(edges.size()) - 1;
+  parallel::for_each(last, edge_grain, [&](Index i) {
+    const EdgeUse& use = edges[at(i)];
+    const bool more = (i > 0 && use.same_edge(edges[at(i) - 1])) || (i + 1 < last && use.same_edge(edges[at(i) + 2]));
+    if (use.same_edge(edges[at(i) + 1]) && !more) {
+      const Index a = use.corner, b = edges[at(i) + 1].corner;
       neighbours[at(a / 3)][at(a % 3)] = b / 3;
       neighbours[at(b / 3)][at(b % 3)] = a / 3;
     }
   });
   return neighbours;
+}
+
+/// Unit vector in the triangle's plane that leads away from one of its edges.
+Vec3d away_from_edge(const Mesh& mesh, Index corner) {
+  const Triangle& t = mesh.triangle[at(corner / 3)];
+  const auto edge = at(corner % 3);
+  const Vec3d start = mesh.position[at(t[edge])], along = mesh.position[at(t[(edge + 1) % 3])] - start;
+  const Vec3d from = mesh.position[at(t[(edge + 2) % 3])] - start;
+  const Vec3d away = from - (dot(from, along) / dot(along, along)) * along;
+  return (1.0 / norm(away)) * away;
+}
+
+/// Makes neighbours of the two triangles at each edge of more than two that go on most straightly. Returns whether
+/// there are such edges.
+bool join_straightest(const Mesh& mesh, const std::vector<EdgeUse>& edges, std::vector<Triangle>& neighbours) {
+  bool any = false;
+  for_each_edge(edges, [&](std::span<const EdgeUse> uses) {
+    if (uses.size() <= 2) {
+      return;
+    }
+    any = true;
+    double straightest = HUGE_VAL;
+    Index first = no_index, second = no_index;
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+      for (std::size_t j = i + 1; j < uses.size(); ++j) {
+        const double cosine = dot(away_from_edge(mesh, uses[i].corner), away_from_edge(mesh, uses[j].corner));
+        if (cosine < straightest) {
+          straightest = cosine;
+          first = uses[i].corner;
+          second = uses[j].corner;
+        }
+      }
+    }
+    neighbours[at(first / 3)][at(first % 3)] = second / 3;
+    neighbours[at(second / 3)][at(second % 3)] = first / 3;
+  });
+  return any;
 }
 
 /// Whether the triangle goes from node a to node b along one of its edges.
@@ -163,35 +160,66 @@ std::vector<std::string> duplicate_triangles(const Mesh& mesh, const std::vector
   return names;
 }
 
-/// Edges of more than two triangles, by the first three of them.
+/// Edges of more triangles than may meet, by the first three of them.
 std::vector<std::string> crowded_edges(const Mesh& mesh, const std::vector<EdgeUse>& edges) {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i + 2 < edges.size(); ++i) {
-    if (edges[i].same_edge(edges[i + 2]) && (i == 0 || !edges[i - 1].same_edge(edges[i]))) {
-      names.push_back(fmt::format("{}-{}-{}", triangle_name(mesh, at(edges[i].corner / 3)),
-                                  triangle_name(mesh, at(edges[i + 1].corner / 3)),
-                                  triangle_name(mesh, at(edges[i + 2].corner / 3))));
+  for_each_edge(edges, [&](std::span<const EdgeUse> uses) {
+    if (uses.size() > at(most_at_edge)) {
+      const auto name = [&](std::size_t i) { return triangle_name(mesh, at(uses[i].corner / 3)); };
+      names.push_back(fmt::format("{}-{}-{}", name(0), name(1), name(2)));
     }
-  }
+  });
   return names;
 }
 
 }  // namespace
 
+/// They are counted into rows of the lower nodes, which are short and sorted each for itself.
+std::vector<EdgeUse> sorted_edges(std::span<const Triangle> triangles) {
+  const auto nodes_of = [&](std::size_t t, std::size_t e) {
+    return std::minmax(triangles[t][e], triangles[t][(e + 1) % 3]);
+  };
+  Index highest = no_index;
+  for (const Triangle& t : triangles) {
+    highest = std::max({highest, t[0], t[1], t[2]});
+  }
+  std::vector<Index> start(at(highest) + 2, 0);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t e = 0; e < 3; ++e) {
+      ++start[at(nodes_of(t, e).first) + 1];
+    }
+  }
+  for (std::size_t n = 1; n < start.size(); ++n) {
+    start[n] += start[n - 1];
+  }
+  std::vector<EdgeUse> edges(3 * triangles.size());
+  std::vector<Index> next(start.begin(), start.end() - 1);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t e = 0; e < 3; ++e) {
+      const auto [low, high] = nodes_of(t, e);
+      edges[at(next[at(low)]++)] = {low, high, static_cast<Index>(3 * t + e)};
+    }
+  }
+  parallel::for_each(highest + 1, node_grain, [&](Index n) {
+    std::sort(edges.begin() + start[at(n)], edges.begin() + start[at(n) + 1], [](const EdgeUse& x, const EdgeUse& y) {
+      return x.high != y.high ? x.high < y.high : x.corner < y.corner;
+    });
+  });
+  return edges;
+}
+
 std::vector<Triangle> edge_neighbours(std::span<const Triangle> triangles) {
   return neighbours_across(triangles.size(), sorted_edges(triangles));
 }
 
-std::vector<Index> boundary_nodes(std::span<const Triangle> triangles, std::span<const Triangle> neighbours) {
+std::vector<Index> boundary_nodes(std::span<const Triangle> triangles) {
   std::vector<Index> nodes;
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t e = 0; e < 3; ++e) {
-      if (neighbours[t][e] == no_index) {
-        nodes.push_back(triangles[t][e]);
-        nodes.push_back(triangles[t][(e + 1) % 3]);
-      }
+  for_each_edge(sorted_edges(triangles), [&](std::span<const EdgeUse> uses) {
+    if (uses.size() == 1) {
+      nodes.push_back(uses[0].low);
+      nodes.push_back(uses[0].high);
     }
-  }
+  });
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
@@ -296,15 +324,22 @@ Surface check_mesh(const Mesh& mesh, const Place& place, std::string_view body, 
         "every triangle once", "remove the duplicates");
   }
   if (const auto crowded = crowded_edges(mesh, edges); !crowded.empty()) {
-    add(fmt::format("it is not a manifold: {} edge(s) belong to more than two triangles: {}", crowded.size(),
-                    named(crowded)),
-        "at most two triangles at an edge", "remove duplicate triangles, or split the parts into separate bodies");
+    add(fmt::format("{} edge(s) belong to more than {} triangles: {}", crowded.size(), most_at_edge, named(crowded)),
+        fmt::format("at most {} triangles at an edge", most_at_edge),
+        "remove duplicate triangles, or split the parts into separate bodies");
   }
   if (errors.size() != before) {
     return {};
   }
   Surface surface{mesh.triangle, neighbours_across(mesh.triangle.size(), edges)};
-  if (!orient_consistently(surface.triangle, surface.neighbour)) {
+  surface.branched = join_straightest(mesh, edges, surface.neighbour);
+  bool oriented = orient_consistently(surface.triangle, surface.neighbour);
+  if (!oriented && surface.branched) {
+    surface.triangle = mesh.triangle;
+    surface.neighbour = neighbours_across(mesh.triangle.size(), edges);
+    oriented = orient_consistently(surface.triangle, surface.neighbour);
+  }
+  if (!oriented) {
     add("its triangles cannot be given a common side (it is a Moebius strip)", "an orientable surface",
         "cut the surface along a line");
     return {};

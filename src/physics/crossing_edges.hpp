@@ -8,18 +8,21 @@
 
 namespace fexp::physics {
 
+/// Most triangles at an edge.
+inline constexpr std::size_t most_at_edge = 8;
+
 /// Two edges a0 a1 and b0 b1, and the third corners of the triangles at each of them.
 struct CrossingEdges {
-  std::array<Vec3d, 4> end;                    ///< a0, a1, b0, b1
-  std::array<std::array<Vec3d, 2>, 2> corner;  ///< Of the triangles at edge a, at edge b
-  std::array<int, 2> triangles{};              ///< 1 at a free edge, or 2
+  std::array<Vec3d, 4> end;                               ///< a0, a1, b0, b1
+  std::array<std::array<Vec3d, most_at_edge>, 2> corner;  ///< Of the triangles at edge a, at edge b
+  std::array<int, 2> triangles{};                         ///< 1 at a free edge, 2, or more where surfaces branch
 };
 
 /// How far two surfaces are closest where their edges cross, 0 to 1, and its gradient.
 struct Sharpness {
   double part{1.0};
   std::array<Vec3d, 4> end{};  ///< By the ends [1/length]
-  int corner{-1};              ///< By which corner it changes: 2 x edge + triangle; -1: by none
+  int corner{-1};              ///< By which corner it changes: most_at_edge x edge + triangle; -1: by none
   Vec3d by_corner;             ///< [1/length]
 };
 
@@ -55,7 +58,7 @@ inline void lower_by_triangle(const CrossingEdges& edges, std::size_t edge, std:
   }
   sharpness = {};
   sharpness.part = part > 0.0 ? part : 0.0;
-  sharpness.corner = static_cast<int>(2 * edge + triangle);
+  sharpness.corner = static_cast<int>(most_at_edge * edge + triangle);
   // -d(n.m) = -m.dn - n.dm, with dn across n and dm across m.
   const Vec3d turn = (sign / (length_n * fading_sine)) * (m - cosine * n);
   const Vec3d lean = (1.0 / (height * fading_sine)) * (n - cosine * m);

@@ -28,7 +28,7 @@ std::vector<FreeEdge> all_free_edges(const model::Model& model) {
   std::vector<FreeEdge> edges;
   for (Index e = 0; e < model.element_count(); ++e) {
     for (std::size_t side = 0; side < 3; ++side) {
-      if (model.neighbour[at(e)][side] == no_index) {
+      if (model.is_free_edge(3 * e + static_cast<Index>(side))) {
         const Index a = model.triangle[at(e)][side], b = model.triangle[at(e)][(side + 1) % 3];
         edges.push_back({e, model.reference_position[at(a)], model.reference_position[at(b)], {a, b}});
       }
@@ -57,8 +57,8 @@ std::vector<Finding> count_notes(const model::Model& model) {
     const model::Body& body = model.bodies[at(b)];
     Finding finding;
     for (Index e = body.elements.begin; e < body.elements.end; ++e) {
-      for (const Index neighbour : model.neighbour[at(e)]) {
-        if (neighbour == no_index) {
+      for (Index edge = 3 * e; edge < 3 * e + 3; ++edge) {
+        if (model.is_free_edge(edge)) {
           add_item(finding, model.element_label[at(e)]);
         }
       }

@@ -72,7 +72,7 @@ TEST(topology, boundary_of_a_plate_is_its_rim) {
       rim.push_back(static_cast<Index>(n));
     }
   }
-  EXPECT_EQ(boundary_nodes(mesh.triangle, edge_neighbours(mesh.triangle)), rim);
+  EXPECT_EQ(boundary_nodes(mesh.triangle), rim);
 }
 
 TEST(topology, corner_rows_list_every_corner_once_ascending_at_its_node) {

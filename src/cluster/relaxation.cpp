@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "parallel/parallel.hpp"
+#include "solve/rest.hpp"
 
 namespace fexp::cluster {
 
@@ -12,27 +13,14 @@ namespace {
 
 constexpr Index piece = 1024;
 
+/// An epoch under kinetic damping is this part of the motion, so that a stop comes soon after the peak [rad].
+constexpr double epoch_phase = 0.25;
+/// Of viscous damping beside kinetic damping, as a part of the critical one [decision 0021].
+constexpr double part_of_critical = 0.3;
+/// A residual that is smaller by this factor is progress.
+constexpr double progress = 0.5;
+
 double ratio(double value, double largest) noexcept { return largest > 0.0 ? std::sqrt(value / largest) : 0.0; }
-
-/// Takes components along the given directions out of translations and rotations: what is prescribed neither waits for
-/// balance nor moves freely, and its reaction is no unbalanced force.
-class FreePart {
- public:
-  FreePart(const model::Model& model, Index body) : model_(model), range_(model.bodies[at(body)].prescribed) {}
-
-  void reduce(Index node, Vec3d& linear, Vec3d& angular) const {
-    const auto begin = model_.prescribed.begin() + range_.begin, end = model_.prescribed.begin() + range_.end;
-    for (auto p = std::lower_bound(begin, end, node, [](const auto&a, Index n) { return a.node < n; });
-         p != end && p->node == node; ++p) {
-      Vec3d& part = p->dof < 3 ? linear : angular;
-      part -= dot(part, p->direction) * p->direction;
-    }
-  }
-
- private:
-  const model::Model& model_;
-  IndexRange range_;
-};
 
 RelaxationSums plus(RelaxationSums a, const RelaxationSums& b) noexcept { return a += b; }
 
@@ -43,12 +31,14 @@ RelaxationSums& RelaxationSums::operator+=(const RelaxationSums& other) noexcept
   kinetic += other.kinetic;
   stiffness += other.stiffness;
   displacement += other.displacement;
+  power += other.power;
   return *this;
 }
 
 RelaxationSums relaxation_sums(const model::Model& model, const model::State& before, const model::State& state,
                                Index body) {
-  const FreePart free(model, body);
+  // What is prescribed neither waits for balance nor moves freely, and its reaction is no unbalanced force.
+  const solve::FreePart free(model, body);
   const auto sum = [&](Index begin, Index end) {
     RelaxationSums part;
     for (Index n = begin; n < end; ++n) {
@@ -66,20 +56,49 @@ RelaxationSums relaxation_sums(const model::Model& model, const model::State& be
       part.kinetic += mass * dot(velocity, velocity) + inertia * dot(rate, rate);
       part.stiffness -= mass * dot(way, change);
       part.displacement += mass * dot(way, way);
+      part.power += mass * dot(velocity, force) + inertia * dot(rate, moment);
     }
     return part;
   };
   return parallel::ordered_fold(model.bodies[at(body)].nodes, piece, RelaxationSums{}, sum, plus);
 }
 
-void Relaxation::add(const RelaxationSums& sums, const model::RunSettings& run, double time, double loads_end) {
+void Relaxation::add(const RelaxationSums& sums, const model::RunSettings& run, const EpochTimes& times) {
+  const double time = times.end, loads_end = times.loads_end;
   largest_unbalanced_ = std::max(largest_unbalanced_, sums.unbalanced);
   largest_kinetic_ = std::max(largest_kinetic_, sums.kinetic);
   residual_ = std::max(ratio(sums.unbalanced, largest_unbalanced_), ratio(sums.kinetic, largest_kinetic_));
   settled_ = residual_ <= run.residual && time >= loads_end;
   // Where the model has softened, or only moved as a whole, the last estimate stays.
   if (sums.stiffness > 0.0 && sums.displacement > 0.0) {
-    damping_ = 2.0 * std::sqrt(sums.stiffness / sums.displacement);
+    frequency_ = std::sqrt(sums.stiffness / sums.displacement);
+  }
+  if (run.relaxation == "automatic") {
+    choose(time, time >= loads_end);
+  } else {
+    method_ = run.relaxation == "viscous" ? Method::viscous : Method::kinetic;
+  }
+  time_ = time;
+  const bool kinetic = method_ != Method::viscous;
+  damping_ = 2.0 * frequency_ * (!kinetic ? 1.0 : method_ == Method::both ? part_of_critical : 0.0);
+  longest_epoch_ = kinetic && frequency_ > 0.0 ? epoch_phase / frequency_ : HUGE_VAL;
+  // Where a single step is longer, the peak may be between two of them, and the nearer one counts: v.M a falls at the
+  // rate omega^2 v.M v there. Epochs that end soon after a peak are better than such that end about it.
+  const double half_step = times.dt > longest_epoch_ ? 0.5 * times.dt : 0.0;
+  stops_ = kinetic && sums.power < half_step * frequency_ * frequency_ * sums.kinetic;
+}
+
+/// Goes on to the next method, and with more patience, when the one at hand has brought the residual no further down.
+void Relaxation::choose(double time, bool loaded) {
+  phase_ += frequency_ * (time - time_);
+  if (!loaded || residual_ < progress * least_residual_) {
+    least_residual_ = residual_;
+    phase_ = 0.0;
+  } else if (phase_ > patience_) {
+    method_ = method_ == Method::both ? Method::kinetic : method_ == Method::kinetic ? Method::viscous : Method::both;
+    least_residual_ = residual_;
+    phase_ = 0.0;
+    patience_ *= 2.0;
   }
 }
 

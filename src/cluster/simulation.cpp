@@ -134,8 +134,10 @@ void Simulation::plan(double target, Attempt& attempt) const {
   const double largest = part * model_.run.safety * 2.0 / std::sqrt(frequency2);
   const double left = target - state_.time;
   const double needed = std::ceil(left / largest);
-  const bool reaches_target = needed <= static_cast<double>(attempt.most_steps);
-  attempt.steps = reaches_target ? std::max(static_cast<Index>(needed), Index{1}) : attempt.most_steps;
+  const double most =
+      std::clamp(std::floor(relaxation_.longest_epoch() / largest), 1.0, static_cast<double>(attempt.most_steps));
+  const bool reaches_target = needed <= most;
+  attempt.steps = std::max(static_cast<Index>(reaches_target ? needed : most), Index{1});
   // The same step all the way: where steps change again and again, modes near the critical step grow.
   attempt.dt = std::isfinite(needed) ? left / std::max(needed, 1.0) : largest;
   attempt.end_time = reaches_target ? target : state_.time + static_cast<double>(attempt.steps) * attempt.dt;
@@ -175,8 +177,9 @@ RankRecord Simulation::advance_islands(const Attempt& attempt, std::int64_t hash
   std::vector<solve::IslandReport> islands(order.size());
   std::vector<double> seconds(solvers_.size(), 0.0);
   std::vector<std::vector<solve::HashRecord>> hashes(order.size());
-  const solve::EpochPlan plan{attempt.dt, attempt.steps,     attempt.end_time,
-                              hash_every, attempt.allowance, model_.run.damping + relaxation_.damping()};
+  const solve::EpochPlan plan{attempt.dt,         attempt.steps,     attempt.end_time,
+                              hash_every,         attempt.allowance, model_.run.damping + relaxation_.damping(),
+                              relaxation_.stops()};
   parallel::for_each(static_cast<Index>(order.size()), 1, [&](Index k) {
     solve::IslandSolver& solver = *solvers_[at(order[at(k)])];
     const auto island_start = Clock::now();
@@ -275,7 +278,7 @@ void Simulation::attempt_epoch(double target, std::int64_t hash_every, const Req
       report.dt = attempt.dt;
       report.steps = attempt.steps;
       gather(record, report);
-      relax();
+      relax(attempt.dt);
       break;
     }
   }
@@ -322,8 +325,8 @@ Simulation::Verdict Simulation::guard(Attempt& attempt, const RankRecord& record
   return Verdict::accept;
 }
 
-/// Damping for the next epoch of a static analysis, and whether it has settled.
-void Simulation::relax() {
+/// How a static analysis is damped in the next epoch, and whether it has settled.
+void Simulation::relax(double dt) {
   if (!model_.run.is_static()) {
     return;
   }
@@ -331,7 +334,7 @@ void Simulation::relax() {
   for (const BodyNotice& notice : notices_) {
     sums += notice.relaxation;
   }
-  relaxation_.add(sums, model_.run, state_.time, loads_end_);
+  relaxation_.add(sums, model_.run, {state_.time, dt, loads_end_});
 }
 
 void Simulation::gather(const RankRecord& record, EpochReport& report) const {

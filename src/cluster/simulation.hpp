@@ -125,7 +125,7 @@ class Simulation {
   Verdict guard(Attempt& attempt, const RankRecord& record, bool may_retry, Fault& fault);
   void put_back();
   void gather(const RankRecord& record, EpochReport& report) const;
-  void relax();
+  void relax(double dt);
   void judge(EpochReport& report);
   void adopt_machines(const std::vector<Machine>& known);
   void unpack_run(ByteReader& in);

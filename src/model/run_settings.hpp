@@ -12,17 +12,19 @@ namespace fexp::model {
 
 struct RunSettings {
   static constexpr std::array<std::string_view, 2> analyses{"dynamic", "static"};
+  static constexpr std::array<std::string_view, 3> relaxations{"automatic", "viscous", "kinetic"};
 
   std::string analysis{"dynamic"};
-  double duration{};                ///< [time]
-  double safety{0.9};               ///< Step over the critical step [-]
-  double minimum_step{-1.0};        ///< Elements get mass to reach this step [time]; negative: none does
-  double damping{0.0};              ///< Mass-proportional damping coefficient [1/time]
-  double energy_drift_limit{0.05};  ///< Largest relative energy imbalance [-]
-  double step_collapse{1.0e-3};     ///< Stop when the critical step falls below this part of the first one [-]
-  double drilling{0.1};             ///< Drilling tie factor beta [-]
-  double residual{1.0e-6};          ///< At which a static analysis ends [-]
-  int epoch_steps{64};              ///< Most steps between two looks at the interaction graph
+  double duration{};                    ///< [time]
+  double safety{0.9};                   ///< Step over the critical step [-]
+  double minimum_step{-1.0};            ///< Elements get mass to reach this step [time]; negative: none does
+  double damping{0.0};                  ///< Mass-proportional damping coefficient [1/time]
+  double energy_drift_limit{0.05};      ///< Largest relative energy imbalance [-]
+  double step_collapse{1.0e-3};         ///< Stop when the critical step falls below this part of the first one [-]
+  double drilling{0.1};                 ///< Drilling tie factor beta [-]
+  double residual{1.0e-6};              ///< At which a static analysis ends [-]
+  std::string relaxation{"automatic"};  ///< How a static analysis is damped
+  int epoch_steps{64};                  ///< Most steps between two looks at the interaction graph
 
   static constexpr Range safety_range{0.0, 1.0, false, true, "> 0 and <= 1"};
   static constexpr Range drilling_range{0.0, 1.0, true, true, "0 to 1"};
@@ -52,6 +54,11 @@ struct RunSettings {
       Field{"residual", "-",
             "A static analysis ends when unbalanced forces and velocities are below this part of the largest so far.",
             &RunSettings::residual, fraction_range},
+      Field{
+          "relaxation", "-",
+          "How a static analysis is damped: by a force against the velocity (\"viscous\"), by stopping all motion when "
+          "the kinetic energy has passed a peak (\"kinetic\"), or by both, and by one alone where both do not help.",
+          &RunSettings::relaxation, Choices(relaxations)},
       Field{"epoch_steps", "-", "Most steps between two looks at the interaction graph.", &RunSettings::epoch_steps,
             epoch_range},
   };

@@ -8,6 +8,7 @@
 #include "base/pack.hpp"
 #include "parallel/parallel.hpp"
 #include "solve/island_step.hpp"
+#include "solve/rest.hpp"
 
 namespace fexp::solve {
 
@@ -91,6 +92,10 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
   std::fill(travelled_.begin(), travelled_.end(), 0.0);
   const double start_time = state.time;
   const Index searches_before = contact_report_.searches;
+  if (plan.stop) {
+    parallel::for_each(static_cast<Index>(bodies_.size()), body_grain,
+                       [&](Index i) { bring_to_rest(model, state, bodies_[at(i)]); });
+  }
   bool opened = false;
   for (Index i = 0; i < plan.steps; ++i) {
     // The last step ends at the very time of the state after it, so that loads evaluated anew there are the same.

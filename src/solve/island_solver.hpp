@@ -22,6 +22,7 @@ struct EpochPlan {
   /// How far a body's nodes may move before it leaves its swept box [length], shape [bodies of the model].
   std::span<const double> allowance;
   double damping{};  ///< Coefficient of mass-proportional damping [1/time]
+  bool stop{};       ///< The bodies are brought to rest before the first step.
 };
 
 struct HashRecord {

@@ -44,6 +44,8 @@ const std::vector<Scene>& scenes() {
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.own_sides > 0; }},
       {"plates_at_rest", test::plates_at_rest, 0.05,
        [](const test::Outcome& o) { return o.extremes.fewest_islands == 3 && o.extremes.most_active_pairs > 5; }},
+      {"plates_that_stop", test::plates_that_stop, 0.05,
+       [](const test::Outcome& o) { return o.stops > 5 && o.extremes.most_active_pairs > 5; }},
       {"metals", test::metals, 0.06,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.plastic_strain > 0.1; }},
       {"shot", test::shot, 0.04,

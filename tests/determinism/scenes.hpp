@@ -47,8 +47,9 @@ inline model::Description two_pairs_of_spheres() {
 
 /// Plates that sag under their weight until they rest, side by side, one of them on a fixed one. How all of them move
 /// sets the damping of each.
-inline model::Description plates_at_rest() {
+inline model::Description resting_plates(const std::string& relaxation) {
   model::Description d = with_contact(0.02);
+  d.run.relaxation = relaxation;
   d.run.analysis = "static";
   for (int i = 0; i < 3; ++i) {
     add_body(d, "plate " + std::to_string(i), plate(1.0 + 0.2 * i, 6 + 8 * i)).translate = {0.0, 3.0 * i, 0.0};
@@ -61,6 +62,20 @@ inline model::Description plates_at_rest() {
   d.node_sets.back().bodies = {"table"};
   fix(d, "table", {"x", "y", "z", "rx", "ry", "rz"});
   d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
+  return d;
+}
+
+inline model::Description plates_at_rest() { return resting_plates("automatic"); }
+
+/// The same in jerks: all motion is stopped again and again, of a rigid body that is turned on the plates as well.
+inline model::Description plates_that_stop() {
+  model::Description d = resting_plates("kinetic");
+  model::BodyDescription& block = add_body(d, "block", plate(0.4, 4));
+  block.rigid = true;
+  block.translate = {0.3, 0.3, 0.021};
+  d.node_sets.emplace_back().name = "block";
+  d.node_sets.back().bodies = {"block"};
+  d.prescribed.push_back({"block", "rz", 0.5, "", {}});
   return d;
 }
 
@@ -265,6 +280,7 @@ struct Outcome {
   cluster::RunExtremes extremes;
   double plastic_strain{};  ///< Largest at the end [-]
   Index deleted{};          ///< At the end
+  int stops{};              ///< Epochs after which motion was stopped
   std::size_t own_sides{};  ///< Sides between nodes and triangles of one body, seen at ends of epochs
 };
 
@@ -279,6 +295,7 @@ inline Outcome run_scene(const model::Model& model, double duration, solve::Kern
       break;
     }
     outcome.hashes.insert(outcome.hashes.end(), report.hashes.begin(), report.hashes.end());
+    outcome.stops += simulation.relaxation().stops() ? 1 : 0;
     for (const auto& sides : simulation.state().sides) {
       for (const model::ContactSide& side : sides) {
         const Index body = model.blocks[at(model.element_block[at(side.element)])].body;

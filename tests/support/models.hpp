@@ -46,10 +46,11 @@ class DirectRun {
     island_.evaluate(model, state, workspace);
   }
 
-  solve::IslandReport advance(double dt, Index steps) {
+  /// `stop`: from rest.
+  solve::IslandReport advance(double dt, Index steps, bool stop = false) {
     std::vector<solve::HashRecord> hashes;
     const double end_time = state.time + static_cast<double>(steps) * dt;
-    const solve::EpochPlan plan{dt, steps, end_time, 0, allowance_, model_.run.damping};
+    const solve::EpochPlan plan{dt, steps, end_time, 0, allowance_, model_.run.damping, stop};
     const solve::IslandReport report = island_.advance(model_, state, workspace, plan, hashes);
     state.step += report.steps_done;
     state.time = report.steps_done == steps ? end_time : state.time + static_cast<double>(report.steps_done) * dt;

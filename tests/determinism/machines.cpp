@@ -29,7 +29,7 @@ const std::vector<Scene>& scenes() {
                                       {"sphere_on_plate", test::sphere_on_plate, 0.05},
                                       {"tube_that_folds", test::tube_that_folds, 0.04},
                                       {"plates_at_rest", test::plates_at_rest, 0.05},
-                                      {"plates_that_stop", test::plates_that_stop, 0.05},
+                                      {"plates_that_stop", test::plates_that_stop, 0.4},
                                       {"metals", test::metals, 0.06},
                                       {"shot", test::shot, 0.06},
                                       {"rigid_and_soft", test::rigid_and_soft, 0.12},

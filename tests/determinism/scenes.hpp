@@ -56,6 +56,7 @@ inline model::Description resting_plates(const std::string& relaxation) {
   }
   add_body(d, "table", plate(1.2, 5)).translate = {-0.1, -0.1, -0.022};
   d.node_sets.emplace_back().name = "rim";
+  d.node_sets.back().bodies = {"plate 0", "plate 1", "plate 2", "table"};
   d.node_sets.back().boundary = true;
   fix(d, "rim", {"x", "y", "z"});
   d.node_sets.emplace_back().name = "table";

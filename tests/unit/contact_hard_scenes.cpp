@@ -365,5 +365,102 @@ TEST(hard_contact, a_fast_impact_at_a_tenth_of_the_speed_of_sound) {
   expect_sound(test::build(d));
 }
 
+/// Meshes that are one where they have nodes in common.
+model::Mesh joined(const std::vector<model::Mesh>& parts) {
+  model::Mesh all = parts.front();
+  for (std::size_t p = 1; p < parts.size(); ++p) {
+    std::vector<Index> number;
+    for (const Vec3d& x : parts[p].position) {
+      const auto found =
+          std::ranges::find_if(all.position, [&](const Vec3d& known) { return norm(known - x) < 1.0e-9; });
+      number.push_back(static_cast<Index>(found - all.position.begin()));
+      if (found == all.position.end()) {
+        all.position.push_back(x);
+      }
+    }
+    for (const auto& t : parts[p].triangle) {
+      all.triangle.push_back({number[at(t[0])], number[at(t[1])], number[at(t[2])]});
+      all.part.push_back(0);
+    }
+  }
+  return all;
+}
+
+/// A plate of 1 by 1 with `place` for its coordinates u from -1/2 to 1/2 and v from 0 to 1.
+template <class Place>
+model::Mesh sheet(int cells, const Place& place) {
+  model::Mesh m = model::generate_mesh(test::plate(1.0, 1.0, cells, cells, "one"));
+  for (Vec3d& x : m.position) {
+    x = place(x.x - 0.5, x.y);
+  }
+  return m;
+}
+
+/// A flange, which falls off to both sides by `slope`, and a web below its middle, along y.
+model::Mesh flange_on_web(double slope) {
+  return joined({sheet(8,
+                       [&](double u, double v) {
+                         return Vec3d{u, v, -slope * std::abs(u)};
+                       }),
+                 sheet(8, [](double u, double v) {
+                   return Vec3d{0.0, v, u - 0.5};
+                 })});
+}
+
+/// A ball thrown at the middle of the flange from above, at the corner of flange and web from below, and at the web.
+TEST(hard_contact, balls_on_a_flange_above_its_web_and_in_the_corners) {
+  struct Throw {
+    Vec3d from, velocity;
+  };
+  const std::array<Throw, 5> throws{{{{-0.25, 0.53, 0.16}, {1.0, 0.0, -0.5}},
+                                     {{0.0, 0.5, 0.2}, {0.0, 0.0, -1.5}},
+                                     {{0.3, 0.47, -0.3}, {-1.0, 0.0, 0.9}},
+                                     {{-0.25, 0.5, -0.4}, {1.0, 0.1, 0.3}},
+                                     {{0.02, -0.15, -0.05}, {0.0, 1.0, 0.1}}}};
+  for (const double slope : {0.0, 0.5, -0.3}) {
+    for (const Throw& thrown : throws) {
+      auto d = scene(0.02, 0.3, stiffer);
+      test::add_body(d, "profile", model::CubedSphere{});
+      model::BodyDescription& ball = test::add_body(d, "ball", model::CubedSphere{});
+      ball.translate = thrown.from;
+      ball.velocity = thrown.velocity;
+      SCOPED_TRACE(testing::Message() << slope << ", from " << thrown.from.x);
+      expect_sound(test::build(d, {flange_on_web(slope), model::generate_mesh(model::CubedSphere{0.1, 3})}));
+    }
+  }
+}
+
+/// Webs across each other, and a flange on both: edges of three and of four sheets, and nodes where all of them meet.
+TEST(hard_contact, a_crossing_of_webs_crushed_by_a_wall) {
+  auto d = scene(0.02, 0.25, stiffer);
+  test::add_body(d, "webs", model::CubedSphere{});
+  d.planes.emplace_back();
+  d.planes.back().name = "wall";
+  d.planes.back().point = {0.0, 0.0, 0.05};
+  d.planes.back().normal = {0.0, 0.0, -1.0};
+  d.planes.back().velocity = {0.0, 0.0, -2.0};
+  d.node_sets.emplace_back();
+  d.node_sets.back().name = "foot";
+  d.node_sets.back().box = model::BoxSelection{{-1.0, -1.0, -1.01}, {1.0, 1.0, -0.99}};
+  test::fix(d, "foot", {"x", "y", "z", "rx", "ry", "rz"});
+  const model::Mesh webs = joined({sheet(8,
+                                         [](double u, double v) {
+                                           return Vec3d{u, v - 0.5, 0.0};
+                                         }),
+                                   sheet(8,
+                                         [](double u, double v) {
+                                           return Vec3d{0.0, v - 0.5, u - 0.5};
+                                         }),
+                                   sheet(8, [](double u, double v) {
+                                     return Vec3d{v - 0.5, 0.0, u - 0.5};
+                                   })});
+  const Outcome outcome = run(test::build(d, {webs}));
+  EXPECT_EQ(outcome.fault, "");
+  EXPECT_GT(outcome.most_pairs, 0);
+  EXPECT_EQ(outcome.edges_through, 0U) << "first at " << outcome.first_time;
+  EXPECT_EQ(outcome.nodes_through, 0U) << "first at " << outcome.first_time;
+  EXPECT_LE(outcome.extremes.energy_error, 0.01);
+}
+
 }  // namespace
 }  // namespace fexp

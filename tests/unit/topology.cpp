@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "model/branches.hpp"
 #include "model/mesh_generators.hpp"
 
 namespace fexp::model {
@@ -164,10 +165,19 @@ TEST(topology, a_small_triangle_of_good_shape_is_no_degenerate_one) {
   EXPECT_TRUE(errors_of(mesh_of({{0.0, 0.0, 0.0}, {1e-9, 0.0, 0.0}, {0.0, 1e-9, 0.0}}, {{0, 1, 2}})).empty());
 }
 
-TEST(topology, an_edge_of_three_triangles_is_refused_with_their_names) {
-  const auto errors = errors_of(mesh_of(square, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}));
+TEST(topology, an_edge_of_more_triangles_than_may_meet_is_refused_with_their_names) {
+  std::vector<Vec3d> position{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
+  std::vector<Triangle> triangle;
+  for (Index i = 0; i < most_at_edge; ++i) {
+    position.push_back({std::cos(0.7 * i), std::sin(0.7 * i), 0.5});
+    triangle.push_back({0, 1, i + 2});
+  }
+  EXPECT_TRUE(errors_of(mesh_of(position, triangle)).empty());
+  position.push_back({2.0, 2.0, 0.5});
+  triangle.push_back({1, 0, most_at_edge + 2});
+  const auto errors = errors_of(mesh_of(position, triangle));
   ASSERT_EQ(errors.size(), 1U);
-  EXPECT_TRUE(has(errors[0], "not a manifold"));
+  EXPECT_TRUE(has(errors[0], "more than 8 triangles"));
   EXPECT_TRUE(has(errors[0], "0-1-2"));
 }
 

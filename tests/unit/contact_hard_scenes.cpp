@@ -16,7 +16,7 @@
 
 /// Scenes that are known to be hard for contact: in each something touches, nothing comes through, and energy and
 /// momenta are kept.
-namespace fexp {
+namespace fexp::hard_contact {
 namespace {
 
 struct Outcome {
@@ -366,4 +366,4 @@ TEST(hard_contact, a_fast_impact_at_a_tenth_of_the_speed_of_sound) {
 }
 
 }  // namespace
-}  // namespace fexp
+}  // namespace fexp::hard_contact

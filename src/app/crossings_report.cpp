@@ -11,7 +11,7 @@ namespace fexp::app {
 namespace {
 
 /// Rows of the table; --json has all.
-constexpr std::size_t most_rows = 40;
+constexpr std::size_t most_table_rows = 40;
 
 std::string place_text(const Vec3d& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x, x.y, x.z); }
 
@@ -71,7 +71,7 @@ std::string CrossingsReport::text() const {
   for (const ReportedFrame& frame : frames) {
     frames_with_new += std::ranges::any_of(frame.pairs, &PairCrossings::has_new) ? 1U : 0U;
     for (const PairCrossings& pair : frame.pairs) {
-      if (++rows > most_rows) {
+      if (++rows > most_table_rows) {
         continue;
       }
       table += row_of_table(frame, pair);
@@ -88,7 +88,7 @@ std::string CrossingsReport::text() const {
     text += fmt::format("{:>6} {:>9} {:>13} {:>8} {:>9} {:>7}  {}\n", "frame", "step", "time", "edges", "new edges",
                         "nodes", "bodies");
     text += table;
-    text += rows > most_rows ? fmt::format("and {} more rows, which --json lists\n", rows - most_rows) : "";
+    text += rows > most_table_rows ? fmt::format("and {} more rows, which --json lists\n", rows - most_table_rows) : "";
   }
   text += fmt::format("{}: {} frames", results, frames.size());
   if (!frames.empty()) {

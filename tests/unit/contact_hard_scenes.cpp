@@ -16,7 +16,7 @@
 
 /// Scenes that are known to be hard for contact: in each something touches, nothing comes through, and energy and
 /// momenta are kept.
-namespace fexp {
+namespace fexp::hard_contact {
 namespace {
 
 struct Outcome {
@@ -463,4 +463,4 @@ TEST(hard_contact, a_crossing_of_webs_crushed_by_a_wall) {
 }
 
 }  // namespace
-}  // namespace fexp
+}  // namespace fexp::hard_contact

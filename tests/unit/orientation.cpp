@@ -9,7 +9,7 @@
 
 #include "base/index.hpp"
 
-namespace fexp {
+namespace fexp::exact_signs {
 namespace {
 
 __extension__ using Wide = __int128;
@@ -118,4 +118,4 @@ TEST(orientation, of_lines_that_meet_is_that_of_the_moved_one) {
 }
 
 }  // namespace
-}  // namespace fexp
+}  // namespace fexp::exact_signs

@@ -44,7 +44,7 @@ struct CheckReport {
   Trial trial;
   std::vector<quality::Finding> findings;
 
-  [[nodiscard]] double step() const { return loaded.model.run.safety * loaded.model.first_critical_step; }
+  [[nodiscard]] double step() const { return loaded.model.first_step(); }
   [[nodiscard]] const std::string& slowest_body() const {
     const Index block = loaded.model.element_block[at(loaded.model.first_critical_element)];
     return loaded.model.bodies[at(loaded.model.blocks[at(block)].body)].name;

@@ -62,7 +62,7 @@ std::vector<Finding> all_findings(const Case& loaded, const std::vector<model::M
     findings.push_back(touching_finding(loaded.model, trial.touching));
   }
   const double shorter = std::min(loaded.deck.output.results_interval, loaded.deck.output.history_interval);
-  const double step = loaded.model.run.safety * loaded.model.first_critical_step;
+  const double step = loaded.model.first_step();
   if (shorter < few_steps * step) {
     findings.push_back(interval_finding(shorter, step, loaded.deck.units.of("time")));
   }

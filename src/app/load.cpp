@@ -66,7 +66,7 @@ Case load_case(const fs::path& deck, io::InputFiles& files, std::vector<model::M
   errors.throw_if_any();
   io::check_output(loaded.deck.output, loaded.model, errors);
   errors.throw_if_any();
-  fill_intervals(loaded.model.run.safety * loaded.model.first_critical_step, loaded.deck);
+  fill_intervals(loaded.model.first_step(), loaded.deck);
   return loaded;
 }
 

@@ -12,6 +12,7 @@
 #include "base/process_threads.hpp"
 #include "base/stopwatch.hpp"
 #include "parallel/parallel.hpp"
+#include "physics/critical_step.hpp"
 #include "solve/loads.hpp"
 
 namespace fexp::cluster {
@@ -67,7 +68,7 @@ Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, Wo
       owner_(model.bodies.size(), no_machine),
       arrived_(model.bodies.size(), true),
       loads_end_(model.run.is_static() ? end_of_curves(model) : 0.0),
-      sudden_energy_(solve::sudden_load_energy(model, state_, model.run.safety * model.first_critical_step)),
+      sudden_energy_(solve::sudden_load_energy(model, state_, model.first_step())),
       watchdog_(model.bodies.size()) {
   parallel::for_each(model_.body_count(), 1, [&](Index b) {
     if (model_.bodies[at(b)].barrier) {
@@ -129,9 +130,10 @@ solve::Diagnostics Simulation::sum_of_diagnostics() const {
 
 /// Step and number of steps towards the target, which may be infinite, and how far the bodies may move meanwhile.
 void Simulation::plan(double target, Attempt& attempt) const {
-  const double frequency2 = attempt.element_frequency2 + attempt.contact_frequency2;
+  const double frequency =
+      physics::damped_frequency(attempt.element_frequency2, attempt.contact_frequency2, model_.run.stiffness_damping);
   const double part = state_.time < half_until_ ? 0.5 : 1.0;
-  const double largest = part * model_.run.safety * 2.0 / std::sqrt(frequency2);
+  const double largest = part * model_.run.safety * 2.0 / frequency;
   const double left = target - state_.time;
   const double needed = std::ceil(left / largest);
   const double most =
@@ -310,8 +312,8 @@ Simulation::Verdict Simulation::guard(Attempt& attempt, const RankRecord& record
   const double allowed = 2.0 * (1.0 - (1.0 - margin_used) * (1.0 - model_.run.safety));
   const bool collapsed =
       !(2.0 / std::sqrt(element2 + contact2) > model_.run.step_collapse * model_.first_critical_step);
-  const bool stable =
-      attempt.dt * std::sqrt(element2 + contact2) <= std::max(allowed, rounding * 2.0 * model_.run.safety);
+  const double frequency = physics::damped_frequency(element2, contact2, model_.run.stiffness_damping);
+  const bool stable = attempt.dt * frequency <= std::max(allowed, rounding * 2.0 * model_.run.safety);
   if (!stable && !collapsed && may_retry) {
     attempt.contact_frequency2 = std::max(attempt.contact_frequency2, contact2);
     attempt.element_frequency2 = std::max(attempt.element_frequency2, element2);

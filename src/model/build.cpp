@@ -96,9 +96,14 @@ void make_rigid(const Description& description, Model& model, ElementShares& sha
   }
 }
 
-/// Gives elements that need a smaller step than asked for as much mass as it takes: the step goes with its root.
+/// Gives elements that need a smaller step than asked for as much mass as it takes: the step goes with its root. With
+/// stiffness damping beta a step dt is critical for the undamped one sqrt(dt^2 + 2 beta dt).
 void scale_masses(Model& model, ElementShares& shares) {
-  const double target = model.run.minimum_step / model.run.safety;
+  if (model.run.minimum_step < 0.0) {
+    return;
+  }
+  const double damped = model.run.minimum_step / model.run.safety;
+  const double target = std::sqrt(damped * damped + 2.0 * model.run.stiffness_damping * damped);
   const auto is_short = [&](double step) { return step < target; };
   if (std::none_of(shares.step.begin(), shares.step.end(), is_short)) {
     return;

@@ -2,6 +2,7 @@
 #include "model/model.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fexp::model {
 
@@ -11,6 +12,12 @@ bool Model::can_touch(Index a, Index b) const noexcept {
   }
   return excluded_pairs.empty() ||
          !std::binary_search(excluded_pairs.begin(), excluded_pairs.end(), std::pair{std::min(a, b), std::max(a, b)});
+}
+
+// sqrt(1 + xi^2) - xi, with the very value of one where there is no damping.
+double Model::first_step() const noexcept {
+  const double xi = run.stiffness_damping / first_critical_step;
+  return run.safety * (first_critical_step * (1.0 / (std::sqrt(1.0 + xi * xi) + xi)));
 }
 
 Vec3d centre_of_mass(const Model& model, const Body& body) {

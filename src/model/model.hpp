@@ -231,9 +231,12 @@ struct Model {
   /// Pairs of bodies (first <= second, sorted) that do not touch.
   std::vector<std::pair<Index, Index>> excluded_pairs;
   RunSettings run;
-  double first_critical_step{};    ///< Smallest element critical step in the reference state [time]
+  /// Smallest element critical step in the reference state, without damping [time]
+  double first_critical_step{};
   Index first_critical_element{};  ///< The element that sets it
 
+  /// Step that the elements allow in the reference state, with their damping and run.safety [time].
+  [[nodiscard]] double first_step() const noexcept;
   [[nodiscard]] Index node_count() const noexcept { return static_cast<Index>(reference_position.size()); }
   [[nodiscard]] Index element_count() const noexcept { return static_cast<Index>(triangle.size()); }
   [[nodiscard]] Index body_count() const noexcept { return static_cast<Index>(bodies.size()); }

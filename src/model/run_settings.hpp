@@ -19,6 +19,7 @@ struct RunSettings {
   double safety{0.9};                   ///< Step over the critical step [-]
   double minimum_step{-1.0};            ///< Elements get mass to reach this step [time]; negative: none does
   double damping{0.0};                  ///< Mass-proportional damping coefficient [1/time]
+  double stiffness_damping{0.0};        ///< Stiffness-proportional damping coefficient [time]
   double energy_drift_limit{0.05};      ///< Largest relative energy imbalance [-]
   double step_collapse{1.0e-3};         ///< Stop when the critical step falls below this part of the first one [-]
   double drilling{0.1};                 ///< Drilling tie factor beta [-]
@@ -46,6 +47,11 @@ struct RunSettings {
             &RunSettings::minimum_step, positive},
       Field{"damping", "1/time", "Mass-proportional damping: force -damping x mass x velocity on every node.",
             &RunSettings::damping, non_negative},
+      Field{
+          "stiffness_damping", "time",
+          "Stiffness-proportional damping: resultants gain stiffness_damping x elastic stiffness x rate of strain. The "
+          "critical step becomes smaller.",
+          &RunSettings::stiffness_damping, non_negative},
       Field{"energy_drift_limit", "-", "The run stops when the relative energy imbalance exceeds this.",
             &RunSettings::energy_drift_limit, positive},
       Field{"step_collapse", "-", "The run stops when the critical step falls below this part of the first one.",

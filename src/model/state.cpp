@@ -62,6 +62,11 @@ Index layer_rows(const Model& model, const ElementBlock& block) {
   return block.layer_row == no_index ? 0 : model.sections[at(block.section)].layer_rows();
 }
 
+/// Rows of a block in the history and, with stiffness damping, as many of its share.
+Index element_row_count(const Model& model) {
+  return model.run.stiffness_damping > 0.0 ? 2 * element_rows : element_rows;
+}
+
 /// Calls `visit(rows, count)` for the used lanes of every row of a body's history, block by block.
 template <class SomeState, class Visit>
 void for_each_row(const Model& model, const Body& body, SomeState& state, const Visit& visit) {
@@ -69,6 +74,9 @@ void for_each_row(const Model& model, const Body& body, SomeState& state, const 
     const ElementBlock& block = model.blocks[at(b)];
     for (Index row = 0; row < element_rows; ++row) {
       visit(state.history.data() + row_offset(b, row), at(block.count));
+    }
+    for (Index row = element_rows; row < element_row_count(model); ++row) {
+      visit(state.damping.data() + row_offset(b, row - element_rows), at(block.count));
     }
     for (Index row = 0; row < layer_rows(model, block); ++row) {
       visit(state.layers.data() + at(block.layer_row + row) * at(block_lanes), at(block.count));
@@ -81,7 +89,7 @@ std::size_t bytes_before_sides(const Model& model, const Body& body) {
   std::size_t numbers = 0;
   for (Index b = body.blocks.begin; b < body.blocks.end; ++b) {
     const ElementBlock& block = model.blocks[at(b)];
-    numbers += at(block.count) * at(element_rows + layer_rows(model, block));
+    numbers += at(block.count) * at(element_row_count(model) + layer_rows(model, block));
   }
   const std::size_t of_node = sizeof(NodeMotion) + sizeof(NodeAcceleration) + at(model.rubbing_walls) * sizeof(Vec3d);
   return at(body.nodes.size()) * of_node + numbers * sizeof(double) +
@@ -220,6 +228,9 @@ State initial_state(const Model& model) {
     rate -= dot(rate, oblique.direction) * oblique.direction;
   }
   state.history.assign(model.blocks.size() * element_rows * at(block_lanes), 0.0);
+  if (model.run.stiffness_damping > 0.0) {
+    state.damping.assign(state.history.size(), 0.0);
+  }
   std::size_t rows = 0;
   for (const ElementBlock& block : model.blocks) {
     rows += at(layer_rows(model, block));
@@ -263,6 +274,9 @@ void copy_body(const Model& model, const State& from, Index body, State& to) {
   copy(from.wall_drag, to.wall_drag, at(owner.nodes.begin) * at(model.rubbing_walls),
        at(owner.nodes.end) * at(model.rubbing_walls));
   copy(from.history, to.history, row_offset(owner.blocks.begin, 0), row_offset(owner.blocks.end, 0));
+  if (!from.damping.empty()) {
+    copy(from.damping, to.damping, row_offset(owner.blocks.begin, 0), row_offset(owner.blocks.end, 0));
+  }
   for (Index b = owner.blocks.begin; b < owner.blocks.end; ++b) {
     const ElementBlock& block = model.blocks[at(b)];
     const std::size_t first = at(block.layer_row) * at(block_lanes);
@@ -280,10 +294,10 @@ void copy_body(const Model& model, const State& from, Index body, State& to) {
 }
 
 // Order: motion of the nodes (x, v, omega), their accelerations (a, alpha), the drag of rubbing walls node by node,
-// rows of the elements and of their layers block by block (used lanes only), the motion of a rigid body, the numbers of
-// sides of nodes, of sides of edges and of books (64 bits each), the sides of nodes (node, element, side: 32, 32 and 8
-// bits, drag), those of edges (first, second, side, drag), the books (other body: 32 bits, five sums), the ledger. All
-// numbers are little-endian and stand side by side.
+// rows of the elements, of their damping where there is any and of their layers block by block (used lanes only), the
+// motion of a rigid body, the numbers of sides of nodes, of sides of edges and of books (64 bits each), the sides of
+// nodes (node, element, side: 32, 32 and 8 bits, drag), those of edges (first, second, side, drag), the books (other
+// body: 32 bits, five sums), the ledger. All numbers are little-endian and stand side by side.
 void append_body_bytes(const Model& model, const State& state, Index body, std::vector<std::byte>& bytes) {
   const Body& owner = model.bodies[at(body)];
   const std::vector<ContactSide>& sides = state.sides[at(body)];

@@ -102,6 +102,8 @@ struct State {
   AlignedVector<NodeMotion> motion;               // [nodes]
   AlignedVector<NodeAcceleration> acceleration;   // [nodes]
   AlignedVector<double> history;                  // [blocks][element_rows][block_lanes]
+  AlignedVector<double> damping;                  // Likewise: what stiffness damping adds to resultants and drilling
+                                                  // rotations, and the energy it has taken; empty without it
   AlignedVector<double> layers;                   // [layered blocks][physics::layer_rows][block_lanes]
   std::vector<RigidMotion> rigid;                 // [rigid bodies]; the motion of their nodes follows from it
   std::vector<std::vector<ContactSide>> sides;    // [bodies]: sorted by (node, element); the body's nodes, and
@@ -147,6 +149,13 @@ void append_body_bytes(const Model& model, const State& state, Index body, std::
   const ElementBlock& block = model.blocks[at(model.element_block[at(element)])];
   return block.layer_row != no_index &&
          layers[(at(block.layer_row) + physics::layer_deleted) * at(block_lanes) + at(element - block.first)] > steps;
+}
+
+/// What stiffness damping has taken from an element so far [force*length]; only where there is any.
+[[nodiscard]] inline double damping_work(const Model& model, const State& state, Index element) {
+  const Index block = model.element_block[at(element)];
+  const Index lane = element - model.blocks[at(block)].first;
+  return state.damping[(at(block) * element_rows + row_energy) * at(block_lanes) + at(lane)];
 }
 
 /// The value of one element row.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "physics/c0_triangle.hpp"
 
@@ -79,6 +80,16 @@ template <class T>
 [[nodiscard]] inline T element_critical_step(const ShellSection& s, double density,
                                              const TriangleFrame<T>& f) noexcept {
   return T(2.0) / square_root(element_frequency_bound(s, density, f));
+}
+
+/// The omega for which 2/omega is the critical step of central differences whose stiffness damping, with coefficient
+/// beta [time], takes the velocity of mid-step: with the bounds of omega^2 of what is damped and of what is not,
+///     (damped2 + other2) dt^2/4 + beta damped2 dt/2 <= 1,
+/// as then M - dt^2/4 K - dt/2 beta K_damped has no negative eigenvalue and an energy of the scheme is positive. For
+/// one mode that is dt = 2/omega (sqrt(1 + xi^2) - xi) with xi = beta omega/2 [BLM00, sec. 6.2].
+[[nodiscard]] inline double damped_frequency(double damped2, double other2, double beta) noexcept {
+  const double half = beta > 0.0 ? 0.5 * beta * damped2 : 0.0;  // A collapsed element has no finite frequency
+  return half + std::sqrt(half * half + (damped2 + other2));
 }
 
 }  // namespace fexp::physics

@@ -69,6 +69,14 @@ double internal_energy(const model::Model& model, const model::State& state, Ind
   return sum;
 }
 
+double stiffness_damping_work(const model::Model& model, const model::State& state, Index begin, Index end) {
+  double sum = 0.0;
+  for (Index e = begin; e < end; ++e) {
+    sum += model::damping_work(model, state, e);
+  }
+  return sum;
+}
+
 /// Plastic work and the number of deleted elements.
 Diagnostics layer_sums(const model::Model& model, const model::State& state, Index begin, Index end) {
   Diagnostics sum;
@@ -130,6 +138,11 @@ Diagnostics body_diagnostics(const model::Model& model, const model::State& stat
   sum.energies.friction = ledger.contact_dissipation;
   sum.energies.external = ledger.external_work;
   sum.energies.damping = ledger.damping_work;
+  if (!state.damping.empty()) {
+    sum.energies.damping += parallel::ordered_fold(
+        owner.elements, piece, 0.0,
+        [&](Index begin, Index end) { return stiffness_damping_work(model, state, begin, end); }, std::plus<>());
+  }
   sum.momenta.external_impulse = ledger.external_impulse;
   sum.momenta.external_angular_impulse = ledger.external_angular_impulse;
   return sum;

@@ -355,10 +355,12 @@ void IslandSolver::advance_patch(const Step& step, Pass pass, std::size_t piece)
   const Patches& patches = step.workspace.patches;
   const Patch& patch = patches.patches[at(pieces_[piece].patch)];
   std::fill_n(force, patch.force_count(), NodeForce{});
-  step.workspace.kernel.elements({step.state.motion.data(), step.model.triangle.data(), step.model.blocks.data(),
-                                  step.workspace.sections.data(), step.state.history.data(), patches.corner.data(),
-                                  force, step.dt, step.model.sections.data(), step.state.layers.data()},
-                                 patch.blocks.begin, patch.blocks.end);
+  step.workspace.kernel.elements(
+      {step.state.motion.data(), step.model.triangle.data(), step.model.blocks.data(), step.workspace.sections.data(),
+       step.state.history.data(), patches.corner.data(), force, step.dt, step.model.sections.data(),
+       step.state.layers.data(), step.state.damping.empty() ? nullptr : step.state.damping.data(),
+       step.model.run.stiffness_damping},
+      patch.blocks.begin, patch.blocks.end);
   const NodeForce* share = force + patch.nodes.size();
   for (Index i = patch.border.begin; i < patch.border.end; ++i) {
     step.workspace.border_force[at(patches.border_place[at(i)])] = *share++;

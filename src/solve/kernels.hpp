@@ -35,6 +35,8 @@ struct ElementKernelArguments {
   double dt{};                               ///< Step just taken [time]; 0 evaluates forces of the present state.
   const model::SectionData* section_data{};  // [sections]; read for layered blocks
   double* layers{};                          // [layered blocks][physics::layer_rows][block_lanes]
+  double* damping{};                         // As `history`; none: no stiffness damping
+  double stiffness_damping{};                ///< Its coefficient [time]
 };
 
 /// Updates resultants of blocks [begin, end) and adds their corner forces, element by element.

@@ -32,6 +32,7 @@ const std::vector<Scene>& scenes() {
                                       {"plates_that_stop", test::plates_that_stop, 0.4},
                                       {"metals", test::metals, 0.06},
                                       {"shot", test::shot, 0.06},
+                                      {"damped_shot", test::damped_shot, 0.06},
                                       {"rigid_and_soft", test::rigid_and_soft, 0.12},
                                       {"rigid_machine", test::rigid_machine, 0.1},
                                       {"swarm", test::swarm, 0.1}};

@@ -50,6 +50,8 @@ const std::vector<Scene>& scenes() {
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.plastic_strain > 0.1; }},
       {"shot", test::shot, 0.04,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.deleted > 9; }},
+      {"damped_shot", test::damped_shot, 0.04,
+       [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.deleted > 9 && o.damping > 0.0; }},
       {"rigid_and_soft", test::rigid_and_soft, 0.12,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.extremes.energy_error < 0.01; }},
       {"rigid_machine", test::rigid_machine, 0.1,

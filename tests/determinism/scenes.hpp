@@ -202,6 +202,14 @@ inline model::Description shot() {
   return d;
 }
 
+/// The same, damped by mass and stiffness.
+inline model::Description damped_shot() {
+  model::Description d = shot();
+  d.run.stiffness_damping = 2.0e-4;
+  d.run.damping = 3.0;
+  return d;
+}
+
 /// A rigid ball and a rigid box, which tumble, meet each other and a soft sphere. Nothing acts from outside. The
 /// penalty is stiff enough to stop bodies that do not give way.
 inline model::Description rigid_and_soft() {
@@ -281,6 +289,7 @@ struct Outcome {
   cluster::RunExtremes extremes;
   double plastic_strain{};  ///< Largest at the end [-]
   Index deleted{};          ///< At the end
+  double damping{};         ///< Energy that stiffness damping has taken in all
   int stops{};              ///< Epochs after which motion was stopped
   std::size_t own_sides{};  ///< Sides between nodes and triangles of one body, seen at ends of epochs
 };
@@ -305,6 +314,7 @@ inline Outcome run_scene(const model::Model& model, double duration, solve::Kern
     }
   }
   for (Index e = 0; e < model.element_count(); ++e) {
+    outcome.damping += model.run.stiffness_damping > 0.0 ? model::damping_work(model, simulation.state(), e) : 0.0;
     outcome.deleted += model::is_deleted(model, simulation.state().layers.data(), e) ? 1 : 0;
     for (Index p = 0; p < model.section_of(e).layered.points.count; ++p) {
       const Index row = physics::layer_points + p * physics::point_rows + physics::point_strain;

@@ -9,6 +9,7 @@
 #include "base/inline.hpp"
 #include "base/pack.hpp"
 #include "physics/layered_shell.hpp"
+#include "physics/shell_damping.hpp"
 #include "solve/kernels.hpp"
 
 namespace fexp::solve::kernels {
@@ -82,9 +83,42 @@ FEXP_INLINE void scatter(const std::array<std::array<double, 6>, 3>& corner, con
   }
 }
 
+/// Resultants, drilling rotations and energy of lane_count<T> elements, from their places in first rows.
+template <class T>
+[[nodiscard]] FEXP_INLINE physics::ShellResultants<T> load_resultants(const double* rows) noexcept {
+  const auto row = [rows](Index r) { return Lanes<T>::load(rows + at(r) * block_lanes); };
+  return {row(model::row_nxx),
+          row(model::row_nyy),
+          row(model::row_nxy),
+          row(model::row_mxx),
+          row(model::row_myy),
+          row(model::row_mxy),
+          row(model::row_qxz),
+          row(model::row_qyz),
+          {row(model::row_drill_1), row(model::row_drill_2), row(model::row_drill_3)},
+          row(model::row_energy)};
+}
+
+template <class T>
+FEXP_INLINE void store_resultants(const physics::ShellResultants<T>& s, double* rows) noexcept {
+  const auto store = [rows](Index r, const T& value) { Lanes<T>::store(value, rows + at(r) * block_lanes); };
+  store(model::row_nxx, s.nxx);
+  store(model::row_nyy, s.nyy);
+  store(model::row_nxy, s.nxy);
+  store(model::row_mxx, s.mxx);
+  store(model::row_myy, s.myy);
+  store(model::row_mxy, s.mxy);
+  store(model::row_qxz, s.qxz);
+  store(model::row_qyz, s.qyz);
+  store(model::row_drill_1, s.drill[0]);
+  store(model::row_drill_2, s.drill[1]);
+  store(model::row_drill_3, s.drill[2]);
+  store(model::row_energy, s.energy);
+}
+
 /// Resultants and corner forces of lane_count<T> elements, of which the first is lane `first` of its block. `motion`
-/// and `history` are their places in first rows. `law` says what a step does to the resultants, and has the last word
-/// on the corner forces.
+/// and `history` are their places in first rows. `law` says what a step does to the resultants and what acts besides
+/// them, and has the last word on the corner forces.
 template <class T, class Law>
 FEXP_INLINE void update(const Law& law, Index first, double dt, const double* motion, double* history,
                         const std::uint16_t* place, NodeForce* node_force) noexcept {
@@ -102,32 +136,10 @@ FEXP_INLINE void update(const Law& law, Index first, double dt, const double* mo
   // Before the resultants, which do not need it, so that its roots and division are under way meanwhile.
   const physics::TriangleFrame<T> frame = physics::triangle_frame(a, b);
 
-  const auto load_row = [history](Index r) { return Access::load(history + at(r) * block_lanes); };
-  const auto store_row = [history](Index r, const T& value) { Access::store(value, history + at(r) * block_lanes); };
-  physics::ShellResultants<T> s{
-      load_row(model::row_nxx),
-      load_row(model::row_nyy),
-      load_row(model::row_nxy),
-      load_row(model::row_mxx),
-      load_row(model::row_myy),
-      load_row(model::row_mxy),
-      load_row(model::row_qxz),
-      load_row(model::row_qyz),
-      {load_row(model::row_drill_1), load_row(model::row_drill_2), load_row(model::row_drill_3)},
-      load_row(model::row_energy)};
+  physics::ShellResultants<T> s = load_resultants<T>(history);
   law.step(first, dt, T(0.5) * middle.doubled_area, increment, s);
-  store_row(model::row_nxx, s.nxx);
-  store_row(model::row_nyy, s.nyy);
-  store_row(model::row_nxy, s.nxy);
-  store_row(model::row_mxx, s.mxx);
-  store_row(model::row_myy, s.myy);
-  store_row(model::row_mxy, s.mxy);
-  store_row(model::row_qxz, s.qxz);
-  store_row(model::row_qyz, s.qyz);
-  store_row(model::row_drill_1, s.drill[0]);
-  store_row(model::row_drill_2, s.drill[1]);
-  store_row(model::row_drill_3, s.drill[2]);
-  store_row(model::row_energy, s.energy);
+  store_resultants(s, history);
+  law.damp(first, dt, T(0.5) * middle.doubled_area, increment, s);
 
   std::array<Vec3<T>, 3> force, moment;
   physics::corner_forces(law.stiffness, frame, s, force, moment);
@@ -147,6 +159,13 @@ struct ElasticLaw {
   FEXP_INLINE void step(Index, double, const T& area, const physics::ShellIncrement<T>& increment,
                         physics::ShellResultants<T>& resultants) const noexcept {
     physics::update_elastic(stiffness, area, increment, resultants);
+  }
+  template <class T>
+  FEXP_INLINE void damp(Index, double, const T&, const physics::ShellIncrement<T>&,
+                        physics::ShellResultants<T>&) const noexcept {}
+  template <class T>
+  [[nodiscard]] FEXP_INLINE T deleted(Index) const noexcept {
+    return T(0.0);
   }
   template <class T>
   FEXP_INLINE void finish(Index, std::array<std::array<T, 6>, 3>&) const noexcept {}
@@ -171,17 +190,63 @@ struct LayeredLaw {
       physics::update_layered(stiffness, section, curve, dt, area, increment, load, store, resultants);
     }
   }
+  template <class T>
+  FEXP_INLINE void damp(Index, double, const T&, const physics::ShellIncrement<T>&,
+                        physics::ShellResultants<T>&) const noexcept {}
+  template <class T>
+  [[nodiscard]] FEXP_INLINE T deleted(Index first) const noexcept {
+    return Lanes<T>::load(layers + at(physics::layer_deleted) * block_lanes + first);
+  }
   /// Deleted elements exert no force, whatever their geometry.
   template <class T>
   FEXP_INLINE void finish(Index first, std::array<std::array<T, 6>, 3>& corner) const noexcept {
     if (section.plasticity.can_fail()) {
-      const T deleted = Lanes<T>::load(layers + at(physics::layer_deleted) * block_lanes + first);
+      const T failed = deleted<T>(first);
       for (std::array<T, 6>& actions : corner) {
         for (T& value : actions) {
-          value = select_less(deleted, T(0.5), value, T(0.0));
+          value = select_less(failed, T(0.5), value, T(0.0));
         }
       }
     }
+  }
+};
+
+/// A law with stiffness damping, whose share of the resultants is in `rows`, those of the block.
+template <class Law>
+struct DampedLaw {
+  Law law;
+  double coefficient;  ///< [time]
+  double* rows;
+  const physics::ShellStiffness& stiffness = law.stiffness;
+
+  template <class T>
+  FEXP_INLINE void step(Index first, double dt, const T& area, const physics::ShellIncrement<T>& increment,
+                        physics::ShellResultants<T>& resultants) const noexcept {
+    law.step(first, dt, area, increment, resultants);
+  }
+  template <class T>
+  FEXP_INLINE void damp(Index first, double dt, const T& area, const physics::ShellIncrement<T>& increment,
+                        physics::ShellResultants<T>& resultants) const noexcept {
+    physics::ShellResultants<T> share = load_resultants<T>(rows + first);
+    if (dt > 0.0) {
+      physics::update_damping(stiffness, coefficient / dt, area, increment, law.template deleted<T>(first), share);
+      store_resultants(share, rows + first);
+    }
+    resultants.nxx = resultants.nxx + share.nxx;
+    resultants.nyy = resultants.nyy + share.nyy;
+    resultants.nxy = resultants.nxy + share.nxy;
+    resultants.mxx = resultants.mxx + share.mxx;
+    resultants.myy = resultants.myy + share.myy;
+    resultants.mxy = resultants.mxy + share.mxy;
+    resultants.qxz = resultants.qxz + share.qxz;
+    resultants.qyz = resultants.qyz + share.qyz;
+    for (std::size_t i = 0; i < 3; ++i) {
+      resultants.drill[i] = resultants.drill[i] + share.drill[i];
+    }
+  }
+  template <class T>
+  FEXP_INLINE void finish(Index first, std::array<std::array<T, 6>, 3>& corner) const noexcept {
+    law.finish(first, corner);
   }
 };
 
@@ -223,8 +288,21 @@ FEXP_INLINE void update_block(const ElementKernelArguments& k, Index index, cons
   }
 }
 
+/// The same, with stiffness damping or without.
+template <class T, bool Damped, class Law>
+FEXP_INLINE void update_block_by(const ElementKernelArguments& k, Index index, const double* motion,
+                                 const Law& law) noexcept {
+  if constexpr (Damped) {
+    update_block<T>(
+        k, index, motion,
+        DampedLaw<Law>{law, k.stiffness_damping, k.damping + at(index) * model::element_rows * block_lanes});
+  } else {
+    update_block<T>(k, index, motion, law);
+  }
+}
+
 /// Not inlined, to leave the loop over elastic blocks as small as it is.
-template <class T>
+template <class T, bool Damped>
 [[gnu::noinline]] void update_layered_block(const ElementKernelArguments& k, Index index,
                                             const double* motion) noexcept {
   const model::ElementBlock& block = k.blocks[index];
@@ -233,11 +311,25 @@ template <class T>
   double* const layers = k.layers + at(block.layer_row) * block_lanes;
   const physics::Hardening& hardening = section.plasticity.hardening;
   if (const auto* linear = std::get_if<physics::LinearHardening>(&hardening)) {
-    update_block<T>(k, index, motion, LayeredLaw<physics::LinearHardening>{stiffness, section, *linear, layers});
+    update_block_by<T, Damped>(k, index, motion,
+                               LayeredLaw<physics::LinearHardening>{stiffness, section, *linear, layers});
   } else if (const auto* power = std::get_if<physics::PowerHardening>(&hardening)) {
-    update_block<T>(k, index, motion, LayeredLaw<physics::PowerHardening>{stiffness, section, *power, layers});
+    update_block_by<T, Damped>(k, index, motion,
+                               LayeredLaw<physics::PowerHardening>{stiffness, section, *power, layers});
   } else if (const auto* table = std::get_if<physics::TableHardening>(&hardening)) {
-    update_block<T>(k, index, motion, LayeredLaw<physics::TableHardening>{stiffness, section, *table, layers});
+    update_block_by<T, Damped>(k, index, motion,
+                               LayeredLaw<physics::TableHardening>{stiffness, section, *table, layers});
+  }
+}
+
+/// Likewise.
+template <class T>
+[[gnu::noinline]] void update_damped_block(const ElementKernelArguments& k, Index index,
+                                           const double* motion) noexcept {
+  if (k.blocks[index].layer_row != no_index) {
+    update_layered_block<T, true>(k, index, motion);
+  } else {
+    update_block_by<T, true>(k, index, motion, ElasticLaw{k.sections[k.blocks[index].section]});
   }
 }
 
@@ -261,8 +353,12 @@ inline void update_blocks(const ElementKernelArguments& k, Index begin, Index en
     for (Index index = group; index < group_end; ++index) {
       const double* const block_rows = motion + at(index - group) * block_motion;
       prefetch_history(k, index + group_blocks);
+      if (k.damping != nullptr) {
+        update_damped_block<T>(k, index, block_rows);
+        continue;
+      }
       if (k.blocks[index].layer_row != no_index) {
-        update_layered_block<T>(k, index, block_rows);
+        update_layered_block<T, false>(k, index, block_rows);
         continue;
       }
       update_block<T>(k, index, block_rows, ElasticLaw{k.sections[k.blocks[index].section]});

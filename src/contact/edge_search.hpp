@@ -33,6 +33,8 @@ class EdgeSearch {
               double skin);
   void list(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> remembered, EdgeCandidates& found);
 
+  [[nodiscard]] std::span<const NearEdge> edges_of(Index block) const;
+
  private:
   struct Pair {
     Index first;
@@ -47,7 +49,6 @@ class EdgeSearch {
 
   void take_edges(const Positions& x, std::span<const Index> blocks, double skin);
   void try_block(const BlockPairs& pairs, const BlockWear& wear, double skin, Index block);
-  [[nodiscard]] std::span<const NearEdge> edges_of(Index block) const;
 
   std::vector<NearEdge> edges_;           // By block
   std::vector<Index> first_edge_;         // [blocks + 1]: into edges_

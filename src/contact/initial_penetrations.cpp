@@ -2,14 +2,16 @@
 #include "contact/initial_penetrations.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
-#include "contact/kd_tree.hpp"
 #include "contact/surface.hpp"
+#include "contact/whole_search.hpp"
 #include "parallel/parallel.hpp"
 #include "physics/closest_lines.hpp"
 #include "physics/closest_point.hpp"
@@ -71,7 +73,14 @@ class NearbyNodes {
   std::map<Index, double> way_;
 };
 
-/// What may be near what.
+bool stands_before(const InitialPenetration& a, const InitialPenetration& b) noexcept {
+  return std::tie(a.first, a.second) < std::tie(b.first, b.second);
+}
+bool stands_before(const Crossing& a, const Crossing& b) noexcept {
+  return std::tie(a.element, a.edge) < std::tie(b.element, b.edge);
+}
+
+/// What may be near what, found as contact finds it.
 class Finder {
  public:
   Finder(const model::Model& model, std::span<const Vec3d> position) : model_(model), x_(position) {
@@ -80,25 +89,31 @@ class Finder {
       double& thickest = thickest_[at(model.node_body[at(n)])];
       thickest = std::max(thickest, model.half_thickness[at(n)]);
     }
-    build_elements();
-    build_edges();
+    motion_.resize(position.size());
+    for (std::size_t n = 0; n < position.size(); ++n) {
+      motion_[n].position = position[n];
+    }
+    std::vector<Index> bodies(model.bodies.size());
+    std::iota(bodies.begin(), bodies.end(), 0);
+    search_.assign(model, bodies);
+    search_.find_partners(model, positions(), 0.0);
   }
 
-  void near_elements(Index node, std::vector<InitialPenetration>& found) const;
-  void near_edges(Index edge, std::vector<InitialPenetration>& found) const;
-  void crossing_edges(Index element, std::vector<Crossing>& found) const;
-  [[nodiscard]] const std::vector<Index>& edges() const noexcept { return edges_; }
+  [[nodiscard]] std::vector<InitialPenetration> near_elements();
+  [[nodiscard]] std::vector<InitialPenetration> near_edges();
+  [[nodiscard]] std::vector<Crossing> crossing_edges() const;
 
  private:
-  void build_elements();
-  void build_edges();
-  [[nodiscard]] double half_thickness_of_edge(Index edge) const {
-    const std::array<Index, 2> n = ends_of(model_, edge);
-    return std::max(model_.half_thickness[at(n[0])], model_.half_thickness[at(n[1])]);
-  }
-  [[nodiscard]] bool may_meet(Index a, Index b) const {
-    return !(model_.bodies[at(a)].barrier && model_.bodies[at(b)].barrier) &&
-           model_.can_touch(std::min(a, b), std::max(a, b));
+  void near_elements(Index node, std::span<const Index> elements, std::vector<InitialPenetration>& found) const;
+  void near_edges(Index edge, std::span<const Index> others, std::vector<InitialPenetration>& found) const;
+  void crossing_edge(Index edge, Index element, std::vector<Crossing>& found) const;
+  [[nodiscard]] Positions positions() const noexcept { return {motion_.data(), 0.0}; }
+  [[nodiscard]] Box box_of(Index element) const {
+    Box box;
+    for (const Index n : model_.triangle[at(element)]) {
+      box.include(x_[at(n)]);
+    }
+    return box;
   }
   [[nodiscard]] NearbyNodes nearby(std::span<const Index> nodes) const {
     return {model_, nodes, short_way_part * 2.0 * thickest_[at(model_.node_body[at(nodes.front())])]};
@@ -106,53 +121,81 @@ class Finder {
 
   const model::Model& model_;
   std::span<const Vec3d> x_;
-  std::vector<double> thickest_;  // [bodies]: half thickness
-  KdTree elements_;
-  std::vector<Index> edges_;  // Each once
-  KdTree edge_tree_;          // Of edges_
+  std::vector<double> thickest_;           // [bodies]: half thickness
+  std::vector<model::NodeMotion> motion_;  // At x_
+  WholeSearch search_;
 };
 
-void Finder::build_elements() {
-  std::vector<Vec3d> centre(model_.triangle.size());
-  std::vector<double> reach(model_.triangle.size());
-  parallel::for_each(model_.element_count(), 4096, [&](Index e) {
-    const auto& t = model_.triangle[at(e)];
-    const Vec3d mean = (1.0 / 3.0) * (x_[at(t[0])] + x_[at(t[1])] + x_[at(t[2])]);
-    centre[at(e)] = mean;
-    reach[at(e)] = std::max({norm(x_[at(t[0])] - mean), norm(x_[at(t[1])] - mean), norm(x_[at(t[2])] - mean)}) +
-                   half_thickness_of(model_, e);
+/// Calls work(i, results) for every i below `count` in parallel, and sorts all results.
+template <class Result, class Work>
+std::vector<Result> gathered(Index count, const Work& work) {
+  std::vector<std::vector<Result>> pieces(at((count + items_per_piece - 1) / items_per_piece));
+  parallel::for_each(static_cast<Index>(pieces.size()), 1, [&](Index piece) {
+    for (Index i = piece * items_per_piece; i < std::min((piece + 1) * items_per_piece, count); ++i) {
+      work(i, pieces[at(piece)]);
+    }
   });
-  elements_.build(centre, reach);
+  std::vector<Result> all;
+  for (const std::vector<Result>& piece : pieces) {
+    all.insert(all.end(), piece.begin(), piece.end());
+  }
+  std::sort(all.begin(), all.end(), [](const Result& a, const Result& b) { return stands_before(a, b); });
+  return all;
 }
 
-void Finder::build_edges() {
-  for (Index e = 0; e < model_.element_count(); ++e) {
-    for (Index a = 0; a < 3; ++a) {
-      const Index other = model_.neighbour[at(e)][at(a)];
-      if (other == no_index || e < other) {
-        edges_.push_back(3 * e + a);
+std::vector<InitialPenetration> Finder::near_elements() {
+  Candidates c;
+  search_.find_nodes(model_, positions(), 0.0, {}, c);
+  return gathered<InitialPenetration>(static_cast<Index>(c.node.size()), [&](Index row, auto& results) {
+    const std::size_t r = at(row);
+    near_elements(c.node[r], std::span(c.element).subspan(at(c.start[r]), at(c.start[r + 1] - c.start[r])), results);
+  });
+}
+
+std::vector<InitialPenetration> Finder::near_edges() {
+  EdgeCandidates c;
+  search_.find_edges(positions(), 0.0, {}, c);
+  return gathered<InitialPenetration>(static_cast<Index>(c.first.size()), [&](Index row, auto& results) {
+    const std::size_t r = at(row);
+    near_edges(c.first[r], std::span(c.second).subspan(at(c.start[r]), at(c.start[r + 1] - c.start[r])), results);
+  });
+}
+
+/// All edges of the blocks that are partners with all elements of these, boxes first.
+std::vector<Crossing> Finder::crossing_edges() const {
+  const BlockPairs& pairs = search_.partners();
+  return gathered<Crossing>(pairs.count(), [&](Index block, auto& results) {
+    const model::ElementBlock& own = model_.blocks[at(pairs.blocks()[at(block)])];
+    std::array<Box, at(model::block_lanes)> boxes;
+    Box whole;
+    for (Index i = 0; i < own.count; ++i) {
+      boxes[at(i)] = box_of(own.first + i);
+      whole.include(boxes[at(i)]);
+    }
+    const IndexRange partners = pairs.partners_of(block);
+    for (Index p = partners.begin; p < partners.end; ++p) {
+      for (const NearEdge& edge : search_.edges_of(pairs.partners()[at(p)])) {
+        Box box{x_[at(edge.node[0])], x_[at(edge.node[0])]};
+        box.include(x_[at(edge.node[1])]);
+        if (!whole.overlaps(box)) {
+          continue;
+        }
+        for (Index i = 0; i < own.count; ++i) {
+          if (boxes[at(i)].overlaps(box)) {
+            crossing_edge(edge.number, own.first + i, results);
+          }
+        }
       }
     }
-  }
-  std::vector<Vec3d> centre(edges_.size());
-  std::vector<double> reach(edges_.size());
-  for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const std::array<Index, 2> n = ends_of(model_, edges_[i]);
-    centre[i] = 0.5 * (x_[at(n[0])] + x_[at(n[1])]);
-    reach[i] = norm(x_[at(n[0])] - centre[i]) + half_thickness_of_edge(edges_[i]);
-  }
-  edge_tree_.build(centre, reach);
+  });
 }
 
-void Finder::near_elements(Index node, std::vector<InitialPenetration>& found) const {
+void Finder::near_elements(Index node, std::span<const Index> elements, std::vector<InitialPenetration>& found) const {
   const Vec3d& point = x_[at(node)];
   const Index body = model_.node_body[at(node)];
   const std::size_t first = found.size();
-  elements_.query(Box{point, point}.grown(model_.half_thickness[at(node)]), [&](Index e) {
+  for (const Index e : elements) {
     const auto& t = model_.triangle[at(e)];
-    if (t[0] == node || t[1] == node || t[2] == node || !may_meet(body, body_of_element(model_, e))) {
-      return;
-    }
     const physics::ClosestPoint closest = physics::closest_point(point, x_[at(t[0])], x_[at(t[1])], x_[at(t[2])]);
     double distance = model_.half_thickness[at(node)];
     for (std::size_t a = 0; a < 3; ++a) {
@@ -162,7 +205,7 @@ void Finder::near_elements(Index node, std::vector<InitialPenetration>& found) c
     if (closest.distance2 < limit * limit) {
       found.push_back({node, e, false, std::sqrt(closest.distance2), distance});
     }
-  });
+  }
   const auto of_body = [&](const InitialPenetration& p) { return body_of_element(model_, p.second) == body; };
   if (std::any_of(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(), of_body)) {
     const NearbyNodes near = nearby(std::span(&node, 1));
@@ -174,25 +217,17 @@ void Finder::near_elements(Index node, std::vector<InitialPenetration>& found) c
   }
 }
 
-void Finder::near_edges(Index edge, std::vector<InitialPenetration>& found) const {
+void Finder::near_edges(Index edge, std::span<const Index> others, std::vector<InitialPenetration>& found) const {
   const std::array<Index, 2> p = ends_of(model_, edge);
   const Index body = model_.node_body[at(p[0])];
   const std::size_t first = found.size();
-  Box box;
-  box.include(x_[at(p[0])]);
-  box.include(x_[at(p[1])]);
-  edge_tree_.query(box.grown(half_thickness_of_edge(edge)), [&](Index i) {
-    const Index other = edges_[at(i)];
+  for (const Index other : others) {
     const std::array<Index, 2> q = ends_of(model_, other);
-    if (other <= edge || p[0] == q[0] || p[0] == q[1] || p[1] == q[0] || p[1] == q[1] ||
-        !may_meet(body, model_.node_body[at(q[0])])) {
-      return;
-    }
     const physics::ClosestOnLines c = physics::closest_on_lines(x_[at(p[0])], x_[at(p[1])], x_[at(q[0])], x_[at(q[1])]);
     constexpr double least = physics::feature_tolerance, most = 1.0 - physics::feature_tolerance;
     if (!(c.sine2 > physics::parallel_sine2) || !(c.first > least) || !(c.first < most) || !(c.second > least) ||
         !(c.second < most)) {
-      return;
+      continue;
     }
     const auto& half = model_.half_thickness;
     const double distance = (1.0 - c.first) * half[at(p[0])] + c.first * half[at(p[1])] +
@@ -200,7 +235,7 @@ void Finder::near_edges(Index edge, std::vector<InitialPenetration>& found) cons
     if (std::abs(c.gap) < touching_part * distance) {
       found.push_back({edge, other, true, std::abs(c.gap), distance});
     }
-  });
+  }
   const auto of_body = [&](const InitialPenetration& f) {
     return model_.node_body[at(ends_of(model_, f.second)[0])] == body;
   };
@@ -214,58 +249,27 @@ void Finder::near_edges(Index edge, std::vector<InitialPenetration>& found) cons
   }
 }
 
-void Finder::crossing_edges(Index element, std::vector<Crossing>& found) const {
+void Finder::crossing_edge(Index edge, Index element, std::vector<Crossing>& found) const {
   const auto& t = model_.triangle[at(element)];
+  const std::array<Index, 2> n = ends_of(model_, edge);
+  const auto is_corner = [&](Index node) { return node == t[0] || node == t[1] || node == t[2]; };
+  if (is_corner(n[0]) || is_corner(n[1])) {
+    return;
+  }
   const Vec3d &a = x_[at(t[0])], &b = x_[at(t[1])], &c = x_[at(t[2])];
   const Vec3d area = cross(b - a, c - a);
   const Vec3d normal = (1.0 / norm(area)) * area;
-  const Index body = body_of_element(model_, element);
-  Box box;
-  for (const Vec3d& corner : {a, b, c}) {
-    box.include(corner);
+  const Vec3d &from = x_[at(n[0])], &to = x_[at(n[1])];
+  const double start = dot(from - a, normal), end = dot(to - a, normal);
+  if (start * end >= 0.0 || std::min(std::abs(start), std::abs(end)) < in_plane_part * norm(to - from)) {
+    return;
   }
-  edge_tree_.query(box, [&](Index i) {
-    const std::array<Index, 2> n = ends_of(model_, edges_[at(i)]);
-    const auto is_corner = [&](Index node) { return node == t[0] || node == t[1] || node == t[2]; };
-    if (is_corner(n[0]) || is_corner(n[1]) || !may_meet(body, model_.node_body[at(n[0])])) {
-      return;
-    }
-    const Vec3d &from = x_[at(n[0])], &to = x_[at(n[1])];
-    const double start = dot(from - a, normal), end = dot(to - a, normal);
-    if (start * end >= 0.0 || std::min(std::abs(start), std::abs(end)) < in_plane_part * norm(to - from)) {
-      return;
-    }
-    const Vec3d point = from + (start / (start - end)) * (to - from);
-    const auto share = [&](const Vec3d& p, const Vec3d& q) { return dot(cross(p - point, q - point), area); };
-    const double least = physics::feature_tolerance * dot(area, area);
-    if (share(a, b) > least && share(b, c) > least && share(c, a) > least) {
-      found.push_back({edges_[at(i)], element});
-    }
-  });
-}
-
-/// Calls work(i, results) for every i below `count` in parallel, and sorts all results.
-template <class Result, class Work, class Before>
-std::vector<Result> gathered(Index count, const Work& work, const Before& before) {
-  std::vector<std::vector<Result>> pieces(at((count + items_per_piece - 1) / items_per_piece));
-  parallel::for_each(static_cast<Index>(pieces.size()), 1, [&](Index piece) {
-    for (Index i = piece * items_per_piece; i < std::min((piece + 1) * items_per_piece, count); ++i) {
-      work(i, pieces[at(piece)]);
-    }
-  });
-  std::vector<Result> all;
-  for (const std::vector<Result>& piece : pieces) {
-    all.insert(all.end(), piece.begin(), piece.end());
+  const Vec3d point = from + (start / (start - end)) * (to - from);
+  const auto share = [&](const Vec3d& p, const Vec3d& q) { return dot(cross(p - point, q - point), area); };
+  const double least = physics::feature_tolerance * dot(area, area);
+  if (share(a, b) > least && share(b, c) > least && share(c, a) > least) {
+    found.push_back({edge, element});
   }
-  std::sort(all.begin(), all.end(), before);
-  return all;
-}
-
-bool stands_before(const InitialPenetration& a, const InitialPenetration& b) noexcept {
-  return std::tie(a.first, a.second) < std::tie(b.first, b.second);
-}
-bool stands_before(const Crossing& a, const Crossing& b) noexcept {
-  return std::tie(a.element, a.edge) < std::tie(b.element, b.edge);
 }
 
 Index body_of_first(const model::Model& model, const InitialPenetration& p) {
@@ -282,18 +286,13 @@ InitialPenetrations find_initial_penetrations(const model::Model& model, std::sp
   if (!model.contact.enabled) {
     return found;
   }
-  const Finder finder(model, position);
-  const auto before = [](const auto& a, const auto& b) { return stands_before(a, b); };
-  found.pairs = gathered<InitialPenetration>(
-      model.node_count(), [&](Index n, auto& results) { finder.near_elements(n, results); }, before);
+  Finder finder(model, position);
+  found.pairs = finder.near_elements();
   if (model.contact.edges) {
-    const std::vector<InitialPenetration> edges = gathered<InitialPenetration>(
-        static_cast<Index>(finder.edges().size()),
-        [&](Index i, auto& results) { finder.near_edges(finder.edges()[at(i)], results); }, before);
+    const std::vector<InitialPenetration> edges = finder.near_edges();
     found.pairs.insert(found.pairs.end(), edges.begin(), edges.end());
   }
-  found.crossings = gathered<Crossing>(
-      model.element_count(), [&](Index e, auto& results) { finder.crossing_edges(e, results); }, before);
+  found.crossings = finder.crossing_edges();
   return found;
 }
 

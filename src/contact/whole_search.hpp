@@ -37,6 +37,11 @@ class WholeSearch {
     edges_.list(pairs_, wear_, remembered, found);
   }
 
+  /// Those that find_partners has found.
+  [[nodiscard]] const BlockPairs& partners() const noexcept { return pairs_; }
+  /// Edges of a block, each of the island's once; only their nodes and numbers are sure to be there.
+  [[nodiscard]] std::span<const NearEdge> edges_of(Index block) const { return edges_.edges_of(block); }
+
  private:
   BlockPairs pairs_;
   BlockWear wear_;

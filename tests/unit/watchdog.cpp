@@ -71,7 +71,7 @@ TEST(watchdog, what_the_model_is_off_is_the_sum_of_what_its_bodies_and_pairs_are
     d.contact.damping = friction ? 0.1 : 0.0;
     d.run.damping = 2.0;
     d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
-    d.planes.push_back({"floor", {0.0, 0.0, -0.05}, {0.0, 0.0, 1.0}, -1.0, {}, {}, {}, ""});
+    d.planes.push_back({{"floor"}, {0.0, 0.0, -0.05}, {0.0, 0.0, 1.0}});
     d.run.energy_drift_limit = 1.0;
     const model::Model model = test::build(d);
     Simulation simulation(model, solve::KernelChoice::automatic);
@@ -326,7 +326,7 @@ TEST(watchdog, a_step_that_collapses_through_a_wall_names_no_body) {
   auto d = two_falls(0.0, 0.0);
   d.contact.enabled = false;
   d.bodies.back().velocity = {0.0, 0.0, -1.0};
-  d.planes.push_back({"floor", {0.0, 0.0, -0.02}, {0.0, 0.0, 1.0}, 1.0e14, {}, {}, {}, ""});
+  d.planes.push_back({{"floor", 1.0e14}, {0.0, 0.0, -0.02}, {0.0, 0.0, 1.0}});
   const model::Model model = test::build(d);
   Simulation simulation(model, solve::KernelChoice::automatic);
   const EpochReport report = run(simulation, 0.05);

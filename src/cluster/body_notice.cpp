@@ -14,6 +14,7 @@ BodyNotice notice_of(const model::Model& model, const model::State& before, cons
     notice.relaxation = relaxation_sums(model, before, state, body);
   }
   notice.contact_work = state.ledger[at(body)].contact_work;
+  notice.wall_dissipation = state.ledger[at(body)].wall_dissipation;
   for (const model::PairBook& book : state.pair_books[at(body)]) {
     notice.pairs_off += std::abs(book.open());
     if (notice.worst_pair.other == no_index || std::abs(book.open()) > std::abs(notice.worst_pair.open())) {

@@ -17,6 +17,7 @@ struct BodyNotice {
   solve::Diagnostics diagnostics;
   RelaxationSums relaxation;  ///< Of a static analysis
   double contact_work{};      ///< Of contact forces on it since the start [force*length]
+  double wall_dissipation{};  ///< What friction and damping of walls have taken of it [force*length]
   /// Of the pairs that it keeps the books of the one that is off the most; `other` is no_index where it keeps none.
   model::PairBook worst_pair{.other = no_index};
   double pairs_off{};  ///< Sum of moduli of what all of these are off [force*length]
@@ -25,7 +26,7 @@ struct BodyNotice {
   /// bodies do. Contact counts by its work; that of walls is a potential of the body.
   [[nodiscard]] double own_balance() const noexcept {
     const solve::Energies& e = diagnostics.energies;
-    return e.kinetic + e.internal + e.barrier + e.damping - e.external - contact_work;
+    return e.kinetic + e.internal + e.barrier + e.damping + wall_dissipation - e.external - contact_work;
   }
 };
 

@@ -20,7 +20,6 @@ constexpr double worn_part = 0.8;
 constexpr double rounding = 1.0e-15;
 constexpr Index rows_per_piece = 64;
 constexpr Index piece_grain = 4;
-constexpr Index node_grain = 4096;
 
 bool by_pair(const model::ContactSide& a, const model::ContactSide& b) noexcept {
   return a.node != b.node ? a.node < b.node : a.element < b.element;

@@ -49,7 +49,7 @@ class Reader {
 
 // Records of doubles alone have no padding and are copied whole.
 static_assert(sizeof(NodeMotion) == 9 * sizeof(double) && sizeof(NodeAcceleration) == 6 * sizeof(double));
-static_assert(sizeof(BodyLedger) == 12 * sizeof(double));
+static_assert(sizeof(BodyLedger) == 13 * sizeof(double));
 static_assert(sizeof(RigidMotion) == 19 * sizeof(double));
 
 std::size_t row_offset(Index block, Index row) { return (at(block) * element_rows + at(row)) * at(block_lanes); }

@@ -68,11 +68,11 @@ struct EdgeSide {
 
 /// Quantities of one body that are integrated over the run or belong to the last evaluated forces.
 struct BodyLedger {
-  double external_work{};   ///< Loads, gravity and prescribed motion [force*length], integrated
-  double damping_work{};    ///< Work taken out by damping (>= 0) [force*length], integrated
-  double contact_energy{};  ///< Potential of the pairs that are booked to this body [force*length]
-  /// Taken by friction and damping of contact and walls (>= 0) [force*length], integrated
-  double contact_dissipation{};
+  double external_work{};            ///< Loads, gravity and prescribed motion [force*length], integrated
+  double damping_work{};             ///< Work taken out by damping (>= 0) [force*length], integrated
+  double contact_energy{};           ///< Potential of the pairs that are booked to this body [force*length]
+  double contact_dissipation{};      ///< Taken by friction and damping of contact (>= 0) [force*length], integrated
+  double wall_dissipation{};         ///< And of rigid walls
   double barrier_energy{};           ///< Potential of rigid walls, with that of sticking to them [force*length]
   double contact_work{};             ///< Of contact forces on this body [force*length], integrated
   Vec3d external_impulse{};          ///< Loads, walls, damping and constraints [force*time], integrated

@@ -135,7 +135,7 @@ Diagnostics body_diagnostics(const model::Model& model, const model::State& stat
   }
   sum.energies.contact = ledger.contact_energy;
   sum.energies.barrier = ledger.barrier_energy;
-  sum.energies.friction = ledger.contact_dissipation;
+  sum.energies.friction = ledger.contact_dissipation + ledger.wall_dissipation;
   sum.energies.external = ledger.external_work;
   sum.energies.damping = ledger.damping_work;
   if (!state.damping.empty()) {

@@ -129,7 +129,7 @@ void IslandSolver::act_on_bodies(const Step& step) {
       }
     }
     step.state.ledger[at(body)].barrier_energy = barrier_energy;
-    step.state.ledger[at(body)].contact_dissipation += dissipation;
+    step.state.ledger[at(body)].wall_dissipation += dissipation;
     hold_constraints(step.model, step.state, body, actions);
   }
 }

@@ -109,7 +109,7 @@ TEST(sharpness, has_the_gradient_that_it_gives) {
   std::mt19937 random(5);
   constexpr double step = 1e-6;
   int faded = 0, by_angle = 0;
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < 6000; ++i) {
     CrossingEdges e = roofs(0.3, 0.2, 1 + i % 2, 1 + (i / 2) % 2);
     if (i % 5 == 0) {  // A web below the first roof
       e.corner[0][2] = Vec3d{0.1, 0.1, -1.0};

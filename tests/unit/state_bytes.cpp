@@ -63,7 +63,7 @@ State random_state(const Model& model, unsigned seed) {
   fill(state.history.data(), state.history.size());
   fill(state.layers.data(), state.layers.size());
   fill(numbers(state.wall_drag), 3 * state.wall_drag.size());
-  fill(numbers(state.ledger), 12 * state.ledger.size());
+  fill(numbers(state.ledger), 13 * state.ledger.size());
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     for (Index i = 0; i < 4; ++i) {
       state.sides[b].push_back({model.bodies[b].nodes.begin + i,
@@ -147,7 +147,7 @@ TEST(state_bytes, the_layout_is_the_documented_one) {
     return value;
   };
   const Body& body = m.bodies[1];
-  ASSERT_EQ(bytes.size(), 16U * 15U * 8U + 18U * 12U * 8U + 24U + 6U * 33U + 44U + 96U);
+  ASSERT_EQ(bytes.size(), 16U * 15U * 8U + 18U * 12U * 8U + 24U + 6U * 33U + 44U + 104U);
   EXPECT_EQ(number_at(0), s.motion[at(body.nodes.begin)].position.x);
   EXPECT_EQ(number_at(72), s.motion[at(body.nodes.begin + 1)].position.x);
   EXPECT_EQ(number_at(16 * 72), s.acceleration[at(body.nodes.begin)].linear.x);
@@ -168,7 +168,7 @@ TEST(state_bytes, the_layout_is_the_documented_one) {
   const std::size_t books = sides + 24 + 6 * 33;
   EXPECT_EQ(std::to_integer<int>(bytes[books]), 1);
   EXPECT_EQ(number_at(books + 4 + 8), s.pair_books[1][0].energy);
-  EXPECT_EQ(number_at(bytes.size() - 96), s.ledger[1].external_work);
+  EXPECT_EQ(number_at(bytes.size() - 104), s.ledger[1].external_work);
 }
 
 TEST(state_bytes, drag_of_walls_follows_the_accelerations_and_is_part_of_the_hash) {
@@ -176,7 +176,7 @@ TEST(state_bytes, drag_of_walls_follows_the_accelerations_and_is_part_of_the_has
   State from = random_state(m, 6), to = random_state(m, 7);
   ASSERT_EQ(from.wall_drag.size(), 32U * 2U);
   const auto bytes = bytes_of(m, from, 1), other = bytes_of(m, to, 0);
-  ASSERT_EQ(bytes.size(), 16U * (15U + 6U) * 8U + 18U * 12U * 8U + 24U + 6U * 33U + 44U + 96U);
+  ASSERT_EQ(bytes.size(), 16U * (15U + 6U) * 8U + 18U * 12U * 8U + 24U + 6U * 33U + 44U + 104U);
   double value{};
   std::memcpy(&value, bytes.data() + 16 * 15 * 8 + 6 * 8 + 3 * 8 + 8, sizeof(value));
   EXPECT_EQ(value, from.wall_drag[2 * (16 + 1) + 1].y);
@@ -349,7 +349,7 @@ TEST(state_bytes, layers_follow_the_rows_of_their_block) {
   const State s = random_state(m, 11);
   const auto bytes = bytes_of(m, s, 1);
   const std::size_t nodes = 16U * 15U * 8U, rows = 12U + 11U;
-  ASSERT_EQ(bytes.size(), nodes + 18U * rows * 8U + 24U + 6U * 33U + 44U + 96U);
+  ASSERT_EQ(bytes.size(), nodes + 18U * rows * 8U + 24U + 6U * 33U + 44U + 104U);
   const auto number_at = [&](std::size_t offset) {
     double value;
     std::memcpy(&value, bytes.data() + offset, sizeof(value));

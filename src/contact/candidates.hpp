@@ -49,7 +49,7 @@ class CandidateSearch {
 
   void take_nodes(const Positions& x, std::span<const Index> blocks);
   void try_block(const model::Model& model, const BlockPairs& pairs, const BlockWear& wear, const Positions& x,
-                 const SearchGeometry& geometry, Index block);
+                 const SearchGeometry& geometry, Index index);
 
   std::vector<Index> nodes_;              // Of all bodies, ascending
   std::vector<NearNode> owned_;           // [nodes_], by the block that has them

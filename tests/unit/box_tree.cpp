@@ -101,10 +101,10 @@ TEST(box_tree, updated_finds_what_a_loop_finds_wherever_boxes_have_moved) {
   BoxTree tree;
   std::vector<Box> boxes = random_boxes(500, random);
   for (const double way : {0.0, 0.001, 0.01, 1.0, 0.001, 10.0, 0.0}) {
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (Box& box : boxes) {
       const Vec3d shift{way * unit(random), way * unit(random), way * unit(random)};
-      if (boxes[i].low.x <= boxes[i].high.x) {
-        boxes[i] = {boxes[i].low + shift, boxes[i].high + shift};
+      if (box.low.x <= box.high.x) {
+        box = {box.low + shift, box.high + shift};
       }
     }
     // One that was empty is there, and one that was there is empty.

@@ -19,7 +19,7 @@
 namespace fexp::hard_contact {
 namespace {
 
-struct Outcome {
+struct EncounterOutcome {
   Index most_pairs{};
   std::size_t edges_through{};  ///< Most at the end of an epoch that are not there at the start
   std::size_t nodes_through{};  ///< Most at the end of an epoch
@@ -31,8 +31,8 @@ struct Outcome {
 };
 
 /// Runs to the end of the description's duration and looks for crossings every few steps.
-Outcome run(const model::Model& model) {
-  Outcome outcome;
+EncounterOutcome run(const model::Model& model) {
+  EncounterOutcome outcome;
   const quality::Surfaces surfaces = test::surfaces_of(model);
   const std::vector<char> alive(surfaces.triangle.size(), 1);
   quality::CrossingWatch watch(surfaces);
@@ -61,8 +61,8 @@ Outcome run(const model::Model& model) {
   return outcome;
 }
 
-Outcome expect_sound(const model::Model& model) {
-  Outcome outcome = run(model);
+EncounterOutcome expect_sound(const model::Model& model) {
+  EncounterOutcome outcome = run(model);
   const cluster::RunExtremes& x = outcome.extremes;
   std::printf("%d elements, %d steps, %d pairs, depth %.2f, energy %.1e, momenta %.1e %.1e, through %zu %zu (at %g)\n",
               model.element_count(), outcome.steps, outcome.most_pairs, x.deepest, x.energy_error,
@@ -246,7 +246,7 @@ TEST(hard_contact, a_corner_that_slides_over_edges_and_off_a_rim) {
   for (Vec3d& x : plate.position) {
     x += Vec3d{-0.5, -0.5, 0.0};
   }
-  const Outcome outcome = expect_sound(test::build(d, {plate, cube(0.1, 2)}));
+  const EncounterOutcome outcome = expect_sound(test::build(d, {plate, cube(0.1, 2)}));
   EXPECT_GT(outcome.last_centre.x, 0.7);
   EXPECT_LT(outcome.last_centre.z, -0.2);
 }
@@ -259,7 +259,7 @@ TEST(hard_contact, a_ball_that_slides_over_a_ridge_and_off_a_rim) {
   ball.velocity = {2.0, 0.0, 0.0};
   hold(d, "roof");
   d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
-  const Outcome outcome =
+  const EncounterOutcome outcome =
       expect_sound(test::build(d, {folded(1.0, 8, -0.3), model::generate_mesh(model::CubedSphere{0.1, 3})}));
   EXPECT_GT(outcome.last_centre.x, 0.7);
   EXPECT_LT(outcome.last_centre.z, -0.2);
@@ -340,7 +340,7 @@ model::Model crossed_folds(double penalty_scale) {
 TEST(hard_contact, folds_across_each_other) { expect_sound(crossed_folds(stiffer)); }
 
 TEST(hard_contact, is_seen_to_give_way_where_the_penalty_is_too_soft) {
-  const Outcome outcome = run(crossed_folds(0.1));
+  const EncounterOutcome outcome = run(crossed_folds(0.1));
   EXPECT_GT(outcome.edges_through, 0U);
   EXPECT_GT(outcome.nodes_through, 0U);
   EXPECT_GT(outcome.first_time, 0.0);

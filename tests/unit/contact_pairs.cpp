@@ -26,13 +26,13 @@ model::ContactPair pair(const std::string& a, const std::string& b) {
   return p;
 }
 
-struct Outcome {
+struct PairOutcome {
   std::uint64_t hash{};
   double friction{};
   double deepest{};
 };
 
-Outcome run(const model::Description& d) {
+PairOutcome run(const model::Description& d) {
   const model::Model model = test::build(d);
   test::DirectRun run(model);
   const solve::IslandReport report = run.advance(0.2 * model.first_critical_step, 600);
@@ -98,7 +98,7 @@ TEST(contact_pairs, give_the_same_bits_as_the_same_settings_for_all) {
   one.contact.pairs[0].friction = 0.4;
   one.contact.pairs[0].damping = 0.2;
   one.contact.pairs[0].penalty_scale = 2.0;
-  const Outcome expected = run(all);
+  const PairOutcome expected = run(all);
   EXPECT_GT(expected.friction, 0.0);
   EXPECT_EQ(run(one).hash, expected.hash);
   one.contact.edges = all.contact.edges = false;
@@ -107,7 +107,7 @@ TEST(contact_pairs, give_the_same_bits_as_the_same_settings_for_all) {
 
 TEST(contact_pairs, leave_those_alone_that_they_do_not_name) {
   auto d = thrown();
-  const Outcome plain = run(d);
+  const PairOutcome plain = run(d);
   EXPECT_EQ(plain.friction, 0.0);
   d.contact.pairs = {pair("plate", "other"), pair("ball", "ball")};
   for (model::ContactPair& p : d.contact.pairs) {

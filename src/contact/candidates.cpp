@@ -81,7 +81,7 @@ void CandidateSearch::try_block(const model::Model& model, const BlockPairs& pai
       continue;
     }
     const Index partner = pairs.partners()[at(p)];
-    const NearNode* const nodes = &owned_[at(first_owned_[at(partner)])];
+    const NearNode* const nodes = owned_.data() + first_owned_[at(partner)];
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): only what kernel.find has written is read
     std::array<NearPair, most_owned * at(model::block_lanes)> near;
     const Index count = kernel.find(triangles, nodes, first_owned_[at(partner) + 1] - first_owned_[at(partner)],

@@ -24,7 +24,9 @@ class Writer {
 
   template <class T>
   void write(const T* records, std::size_t count) {
-    std::memcpy(next_, records, count * sizeof(T));
+    if (count > 0) {  // Else there may be no records to point to
+      std::memcpy(next_, records, count * sizeof(T));
+    }
     next_ += count * sizeof(T);
   }
 
@@ -39,7 +41,9 @@ class Reader {
 
   template <class T>
   void read(T* records, std::size_t count) {
-    std::memcpy(records, next_, count * sizeof(T));
+    if (count > 0) {
+      std::memcpy(records, next_, count * sizeof(T));
+    }
     next_ += count * sizeof(T);
   }
 

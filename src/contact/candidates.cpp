@@ -74,11 +74,15 @@ void CandidateSearch::try_block(const model::Model& model, const BlockPairs& pai
   const model::ElementBlock& block = model.blocks[at(pairs.blocks()[at(index)])];
   const NearKernel& kernel = near_kernels().back();
   BlockTriangles triangles;  // NOLINT(cppcoreguidelines-pro-type-member-init): kernel.prepare fills it
-  kernel.prepare(geometry, block, triangles);
+  bool ready = false;
   const IndexRange partners = pairs.partners_of(index);
   for (Index p = partners.begin; p < partners.end; ++p) {
     if (!wear.is_due_and_near(p)) {
       continue;
+    }
+    if (!ready) {
+      kernel.prepare(geometry, block, triangles);
+      ready = true;
     }
     const Index partner = pairs.partners()[at(p)];
     const NearNode* const nodes = owned_.data() + first_owned_[at(partner)];

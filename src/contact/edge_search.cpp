@@ -70,19 +70,23 @@ void EdgeSearch::try_block(const BlockPairs& pairs, const BlockWear& wear, doubl
   std::vector<Pair>& found = found_[at(block)];
   leave_out_due(pairs, wear, block, found);
   const std::span<const NearEdge> own = edges_of(block);
-  BlockEdges ready;  // NOLINT(cppcoreguidelines-pro-type-member-init): make_ready fills it
-  make_ready(own, ready);
+  BlockEdges edges;  // NOLINT(cppcoreguidelines-pro-type-member-init): make_ready fills it
+  bool ready = false;
   const IndexRange partners = pairs.partners_of(block);
   for (Index p = partners.begin; p < partners.end; ++p) {
     const Index partner = pairs.partners()[at(p)];
     if (partner < block || !wear.is_due_and_near(p)) {
       continue;
     }
+    if (!ready) {
+      make_ready(own, edges);
+      ready = true;
+    }
     const std::span<const NearEdge> others = edges_of(partner);
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): only what the kernel has written is read
     std::array<NearEdgePair, at(most_edges) * at(most_edges)> near;
     const Index count =
-        near_edge_kernels().back()(ready, others.data(), static_cast<Index>(others.size()), skin, near.data());
+        near_edge_kernels().back()(edges, others.data(), static_cast<Index>(others.size()), skin, near.data());
     for (Index k = 0; k < count; ++k) {
       const NearEdgePair& pair = near[at(k)];
       found.push_back({own[at(pair.lane)].number, others[at(pair.edge)].number, partner, pair.slack});

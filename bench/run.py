@@ -29,14 +29,14 @@ own_keys = {"name", "family_index", "per_family_instance_index", "run_name", "ru
 
 
 def processor():
-    for line in Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return os.uname().machine
+    """Name and family; virtual machines give all generations of a maker one name."""
+    known = dict(re.findall(r"^(model name|cpu family)\s*: (.*)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE))
+    name = known.get("model name", os.uname().machine)
+    return f"{name}, family {known['cpu family']}" if "cpu family" in known else name
 
 
 def machine_name():
-    words = re.sub(r"\((r|tm)\)|cpu|processor|@.*", " ", processor().lower())
+    words = re.sub(r"\((r|tm)\)|cpu|processor|@[^,]*", " ", processor().lower())
     return "-".join(re.findall(r"[a-z0-9.]+", words)) + f"-{os.cpu_count()}-threads"
 
 

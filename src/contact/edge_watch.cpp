@@ -232,9 +232,12 @@ void EdgeWatch::push(model::EdgeSide& known, const Pair& p, const Vec3d& drag_be
       steepest = std::max(steepest, norm(sharpness.end[end]));
     }
     push.stiffness += 4.0 * stiff * depth.value * steepest;
-    if (sharpness.corner >= 0) {
-      push.corner = corner[static_cast<std::size_t>(sharpness.corner)];
-      push.corner_force = -push.energy * sharpness.by_corner;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (sharpness.corner[i] >= 0) {
+        push.corner[i] = corner[static_cast<std::size_t>(sharpness.corner[i])];
+        push.corner_force[i] = -push.energy * sharpness.by_corner[i];
+        push.corner_stiffness[i] = 2.0 * stiff * depth.value * norm(sharpness.by_corner[i]);
+      }
     }
   }
   push.energy *= part;

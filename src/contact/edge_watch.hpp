@@ -16,10 +16,11 @@ namespace fexp::contact {
 struct ActiveEdges {
   Index first{};
   Index second{};
-  std::array<Vec3d, 4> force;  ///< On the ends of the first and of the second edge [force]
-  Index corner{no_index};      ///< A node besides, that of a triangle at one of the edges
-  Vec3d corner_force;          ///< [force]
-  double at_first{};           ///< Where along the edge, 0 to 1
+  std::array<Vec3d, 4> force;                       ///< On the ends of the first and of the second edge [force]
+  std::array<Index, 2> corner{no_index, no_index};  ///< Nodes besides, those of triangles at one of the edges
+  std::array<Vec3d, 2> corner_force;                ///< [force]
+  std::array<double, 2> corner_stiffness{};         ///< A bound [force/length]
+  double at_first{};                                ///< Where along the edge, 0 to 1
   double at_second{};
   double energy{};  ///< As of ActivePair, and so on
   double dissipated{};

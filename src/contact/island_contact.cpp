@@ -300,8 +300,8 @@ void IslandContact::book_half_work(const model::Model& model, const model::State
       const Index a = model.node_body[at(first[0])], b = model.node_body[at(second[0])];
       double on_a = power(pair.force[0], first[0]) + power(pair.force[1], first[1]);
       double on_b = power(pair.force[2], second[0]) + power(pair.force[3], second[1]);
-      if (pair.corner != no_index) {
-        (model.node_body[at(pair.corner)] == a ? on_a : on_b) += power(pair.corner_force, pair.corner);
+      for (std::size_t i = 0; i < 2 && pair.corner[i] != no_index; ++i) {
+        (model.node_body[at(pair.corner[i])] == a ? on_a : on_b) += power(pair.corner_force[i], pair.corner[i]);
       }
       book(a, b, on_a, on_b);
     });
@@ -363,23 +363,23 @@ void IslandContact::add(const model::Model& model, const Positions& x, const Act
   books_.add(model, model.node_body[at(first[0])], model.node_body[at(second[0])], pair.energy, pair.dissipated);
   const auto is_barrier = [&](Index n) { return model.bodies[at(model.node_body[at(n)])].barrier; };
   const bool with_barrier = is_barrier(first[0]) || is_barrier(second[0]);
-  const auto act = [&](Index n, const Vec3d& force, double weight) {
+  const auto act = [&](Index n, const Vec3d& force, double stiffness) {
     if (is_barrier(n)) {
       return;
     }
     nodes.force[at(n)] += force;
-    nodes.stiffness[at(n)] += weight * pair.stiffness;
+    nodes.stiffness[at(n)] += stiffness;
     if (with_barrier) {
       body.barrier_force += force;
       body.barrier_moment += cross(x(n), force);
     }
   };
-  act(first[0], pair.force[0], 1.0 - pair.at_first);
-  act(first[1], pair.force[1], pair.at_first);
-  act(second[0], pair.force[2], 1.0 - pair.at_second);
-  act(second[1], pair.force[3], pair.at_second);
-  if (pair.corner != no_index) {
-    act(pair.corner, pair.corner_force, 0.0);
+  act(first[0], pair.force[0], (1.0 - pair.at_first) * pair.stiffness);
+  act(first[1], pair.force[1], pair.at_first * pair.stiffness);
+  act(second[0], pair.force[2], (1.0 - pair.at_second) * pair.stiffness);
+  act(second[1], pair.force[3], pair.at_second * pair.stiffness);
+  for (std::size_t i = 0; i < 2 && pair.corner[i] != no_index; ++i) {
+    act(pair.corner[i], pair.corner_force[i], pair.corner_stiffness[i]);
   }
 }
 

@@ -73,12 +73,18 @@ TEST(edge_distance, of_edges_without_length_is_that_of_points) {
   EXPECT_EQ(edge_distance2({0, 0, 0}, {0, 0, 0}, {3, 4, 0}, {3, 4, 0}), 25.0);
 }
 
-TEST(sharpness, is_full_where_both_surfaces_fall_away_and_none_where_one_leads_to_the_other_edge) {
+TEST(sharpness, is_full_where_both_surfaces_fall_away_and_fades_where_one_leads_to_the_other_edge) {
   EXPECT_EQ(part_of(roofs(0.1, 0.5, 2, 2), 1), 1.0);
   // From the other side the roofs are valleys.
   EXPECT_EQ(part_of(roofs(0.1, 0.5, 2, 2), -1), 0.0);
   CrossingEdges one_leads = roofs(0.1, 0.5, 2, 2);
+  one_leads.corner[1][1].z = 0.1;  // Across the normal: half of the other one's fall is left
+  const double along = part_of(one_leads, 1);
+  EXPECT_NEAR(along, (0.5 * std::sqrt(0.2) - flat_sine) / fading_sine, 1e-14);
   one_leads.corner[1][1].z = 0.05;
+  EXPECT_GT(part_of(one_leads, 1), 0.5 * along);
+  EXPECT_LT(part_of(one_leads, 1), along);
+  one_leads.corner[1][1].z = 0.1 - 0.32;
   EXPECT_EQ(part_of(one_leads, 1), 0.0);
 }
 
@@ -132,7 +138,7 @@ TEST(sharpness, has_the_gradient_that_it_gives) {
       continue;
     }
     ++faded;
-    by_angle += s.corner < 0 ? 1 : 0;
+    by_angle += s.corner[0] < 0 ? 1 : 0;
     const auto slope = [&](Vec3d& x, const Vec3d& direction) {
       const Vec3d kept = x;
       x = kept + step * direction;
@@ -147,7 +153,10 @@ TEST(sharpness, has_the_gradient_that_it_gives) {
         EXPECT_NEAR(slope(e.end[end], direction), dot(s.end[end], direction), 2e-5) << i;
       }
       for (std::size_t c = 0; c < 2 * most_at_edge; ++c) {
-        const double expected = static_cast<int>(c) == s.corner ? dot(s.by_corner, direction) : 0.0;
+        double expected = 0.0;
+        for (std::size_t k = 0; k < 2; ++k) {
+          expected += static_cast<int>(c) == s.corner[k] ? dot(s.by_corner[k], direction) : 0.0;
+        }
         EXPECT_NEAR(slope(e.corner[c / most_at_edge][c % most_at_edge], direction), expected, 2e-5) << i;
       }
     }

@@ -117,14 +117,14 @@ EdgeWatch::Place EdgeWatch::place_at(const Pair& p, double first, double second,
   const std::array<double, 4> weight{1.0 - first, first, 1.0 - second, second};
   for (std::size_t end = 0; end < 4; ++end) {
     const std::size_t n = at(p.node[end]);
-    place.distance += weight[end] * model_.half_thickness[n];
+    place.full += weight[end] * model_.half_thickness[n];
     // Barriers do not give way.
     if (!model_.bodies[at(model_.node_body[n])].barrier) {
       place.compliance += weight[end] / model_.contact_stiffness[n];
       place.inverse_mass += weight[end] / model_.mass[n];
     }
   }
-  place.distance = most_distance < place.distance ? most_distance : place.distance;
+  place.distance = most_distance < place.full ? most_distance : place.full;
   return place;
 }
 
@@ -211,32 +211,33 @@ void EdgeWatch::push(model::EdgeSide& known, const Pair& p, const Vec3d& drag_be
   const Vec3d normal = (known.side / norm(p.lines.normal)) * p.lines.normal;
   const model::ContactLaw& law = law_of(p);
   const double stiff = pair_stiffness(law, place.compliance), part = sharpness.part;
+  const physics::Penalty penalty = physics::penalty_of(stiff, law.hardening, depth.value, place.full);
   ActiveEdges push;
   push.first = p.first;
   push.second = p.second;
   push.at_first = place.first;
   push.at_second = place.second;
-  push.energy = 0.5 * stiff * depth.value * depth.value;
+  push.energy = penalty.energy;
   // The distance grows with the height before the edges are through, and against it behind that.
   const double by_height = depth.by_height + (height < 0.0 ? depth.by_nearness : -depth.by_nearness);
-  add_force(place.first, place.second, (-part * stiff * depth.value * by_height) * normal, push.force);
+  add_force(place.first, place.second, (-part * penalty.force * by_height) * normal, push.force);
   leave_to_ends(p, law, most, height, part * normal, push);
   if (!(push.energy > 0.0)) {
     return;
   }
-  push.stiffness = part * stiff;
+  push.stiffness = part * penalty.stiffness;
   if (part < 1.0) {
     double steepest = 0.0;
     for (std::size_t end = 0; end < 4; ++end) {
       push.force[end] -= push.energy * sharpness.end[end];
       steepest = std::max(steepest, norm(sharpness.end[end]));
     }
-    push.stiffness += 4.0 * stiff * depth.value * steepest;
+    push.stiffness += 4.0 * penalty.force * steepest;
     for (std::size_t i = 0; i < 2; ++i) {
       if (sharpness.corner[i] >= 0) {
         push.corner[i] = corner[static_cast<std::size_t>(sharpness.corner[i])];
         push.corner_force[i] = -push.energy * sharpness.by_corner[i];
-        push.corner_stiffness[i] = 2.0 * stiff * depth.value * norm(sharpness.by_corner[i]);
+        push.corner_stiffness[i] = 2.0 * penalty.force * norm(sharpness.by_corner[i]);
       }
     }
   }
@@ -270,12 +271,13 @@ void EdgeWatch::leave_to_ends(const Pair& p, const model::ContactLaw& law, doubl
     if (!(depth.value > 0.0) || !(distance > 0.0)) {
       continue;
     }
-    const double stiff = pair_stiffness(law, place.compliance), energy = 0.5 * stiff * depth.value * depth.value;
-    if (energy > most) {
-      most = energy;
+    const physics::Penalty penalty =
+        physics::penalty_of(pair_stiffness(law, place.compliance), law.hardening, depth.value, place.full);
+    if (penalty.energy > most) {
+      most = penalty.energy;
       at_most = place;
-      at_end = ((of_first ? part : -part) * stiff * depth.value * depth.by_nearness / distance) * offset;
-      at_crossing = (stiff * depth.value * depth.by_height) * normal;
+      at_end = ((of_first ? part : -part) * penalty.force * depth.by_nearness / distance) * offset;
+      at_crossing = (penalty.force * depth.by_height) * normal;
     }
   }
   if (most > 0.0) {

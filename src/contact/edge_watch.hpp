@@ -9,6 +9,7 @@
 #include "model/branches.hpp"
 #include "physics/closest_lines.hpp"
 #include "physics/crossing_edges.hpp"
+#include "physics/penalty.hpp"
 
 namespace fexp::contact {
 
@@ -36,10 +37,11 @@ struct ActiveEdges {
 /// closest at their crossing, see physics::sharpness_of; elsewhere nodes against elements see what is closest. Where an
 /// end of one edge is as close to the other edge, it pushes as a node. So a pair has the potential
 ///
-///     s/2 (k g^2 - max k_i g_i^2)
+///     s (U(g) - max U_i(g_i))
 ///
-/// with the sharpness s, the edges' gap g and those of the four ends g_i: it passes into that of a node where the
-/// crossing slides over an end, and is there only once. All forces are its derivatives (but those of k and d).
+/// with the sharpness s, the penalty's energy U, the edges' gap g and those of the four ends g_i: it passes into that
+/// of a node where the crossing slides over an end, and is there only once. All forces are its derivatives (but those
+/// of k and d).
 class EdgeWatch {
  public:
   /// Where `before` is `now`, as for NodeWatch.
@@ -56,6 +58,7 @@ class EdgeWatch {
   struct Place {
     double first{};  ///< Along the first edge, 0 to 1
     double second{};
+    double full{};        ///< Half thicknesses together [length]
     double distance{};    ///< Of contact [length]
     double compliance{};  ///< Of the ends by their weights, in series [length/force]
     double inverse_mass{};

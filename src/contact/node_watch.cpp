@@ -41,6 +41,7 @@ void NodeWatch::look(Index node, std::span<const Index> candidates, std::span<co
     measure();
     decide_sides(memory);
   }
+  find_depths();
   leave_one_of_smooth_neighbours();
   push(memory, active);
   for (const Watched& w : watched_) {
@@ -96,15 +97,19 @@ void NodeWatch::follow(const model::ContactSide& known) {
   if (!w.is_through(known.side)) {
     return;
   }
-  through_.push_back(known);
   for (int hop = 0; hop < most_hops && !w.acts; ++hop) {
     if (!may_touch(model_, node_, w.closer)) {
+      through_.push_back(known);
       return;
     }
     w = measured(w.closer);
   }
+  if (w.acts && (!w.is_through(known.side) || !could_come_through(w, known.side))) {
+    return;
+  }
+  through_.push_back(known);
   const double deepest = watch_distance(model_, node_, w.element) + depth_limit(w.element);
-  if (w.acts && w.is_through(known.side) && w.distance < deepest) {
+  if (w.acts && w.distance < deepest) {
     deep_.push_back({node_, w.element, known.side});
   }
 }
@@ -212,6 +217,14 @@ void NodeWatch::decide_sides(std::span<const model::ContactSide> memory) {
       w.side = view_of(model_, normals_before_, w.element, closest_on(model_, before_, w.element, before_(node_))).side;
     }
   }
+  for (Watched& w : watched_) {
+    for (const Watched& other : watched_) {
+      if (w.closer == no_index && other.closer == no_index && w.is_through(w.side) && other.is_nearer(w) &&
+          !other.is_through(other.side) && hides(other, w)) {
+        w.side = w.view.side;  // What is in front of it has not let the node through
+      }
+    }
+  }
   // Where a neighbour is closer, its side is what counts, and so on to the closest of all: a node that goes round a rim
   // takes all others along. A closer neighbour that is not watched is the node's own element, and until the node stands
   // before the face itself there is nothing to remember. Where the element ends at others, their sides are not its own.
@@ -234,7 +247,8 @@ void NodeWatch::decide_sides(std::span<const model::ContactSide> memory) {
       closest = same_side ? watched(closest->closer) : nullptr;
     }
     if (closest != nullptr) {
-      w.side = closest->side;
+      // In front of what is closest it has not come through what it sees from behind there: the surface is bent.
+      w.side = w.is_through(closest->side) && !closest->is_through(closest->side) ? w.view.side : closest->side;
     }
   }
 }
@@ -243,6 +257,11 @@ bool NodeWatch::share_corner(Index a, Index b) const {
   const auto& s = model_.triangle[at(a)];
   const auto& t = model_.triangle[at(b)];
   return std::any_of(s.begin(), s.end(), [&](Index n) { return n == t[0] || n == t[1] || n == t[2]; });
+}
+
+/// Whether an element is seen through another one: they meet at a sharp fold.
+bool NodeWatch::hides(const Watched& other, const Watched& w) const {
+  return other.view.agreed && w.view.agreed && other.view.side != w.view.side && share_corner(other.element, w.element);
 }
 
 /// Direction of the force on the node. The offset gives it while it has one; a node on the very surface is pushed along
@@ -268,6 +287,16 @@ bool NodeWatch::are_neighbours(const Watched& a, const Watched& b) const {
   return false;
 }
 
+void NodeWatch::find_depths() {
+  for (Watched& w : watched_) {
+    if (w.acts) {
+      w.full = full_distance(w);
+      w.reach = contact_distance(w, w.full);
+      w.depth = w.reach - (w.is_through(w.side) ? -w.distance : w.distance);
+    }
+  }
+}
+
 /// A smooth hollow may have several closest points, on faces, edges and corners. A node that has come through a body is
 /// pushed back through what is closest of it, not out of every wall it sees from inside. All that is compared here is
 /// the same whichever element stands for an edge or a corner.
@@ -278,38 +307,42 @@ void NodeWatch::leave_one_of_smooth_neighbours() {
   };
   for (Watched& w : watched_) {
     for (const Watched& other : watched_) {
-      const bool nearer = other.closest.distance2 < w.closest.distance2 ||
-                          (other.closest.distance2 == w.closest.distance2 && other.element < w.element);
-      // Seen through the other one: they meet at a sharp fold.
-      const bool hidden = other.view.agreed && w.view.agreed && other.view.side != w.view.side &&
-                          share_corner(other.element, w.element);
+      const bool nearer = other.is_nearer(w);
+      const bool in_front = !other.is_through(other.side) && !w.is_through(w.side);
+      const bool deeper = in_front && other.depth != w.depth ? other.depth > w.depth : nearer;
       // One that has been beaten itself still beats: what is closest of all decides.
-      if (w.acts && nearer && other.closer == no_index && other.element != w.element &&
-          (hidden || both_through(other, w) ||
-           (dot(direction(other), direction(w)) > smooth_cosine && are_neighbours(other, w)))) {
+      if (w.acts && other.closer == no_index && other.element != w.element &&
+          ((nearer && (hides(other, w) || both_through(other, w))) ||
+           (deeper && dot(direction(other), direction(w)) > smooth_cosine && are_neighbours(other, w)))) {
         w.acts = false;
       }
     }
   }
 }
 
-/// Half thicknesses at the closest point, or what the pair had in the reference configuration where that is less.
-double NodeWatch::contact_distance(const Watched& w) const {
+/// Half thicknesses at the closest point [length].
+double NodeWatch::full_distance(const Watched& w) const {
   const auto& t = model_.triangle[at(w.element)];
   double distance = model_.half_thickness[at(node_)];
   for (std::size_t a = 0; a < 3; ++a) {
     distance += w.closest.weight[a] * model_.half_thickness[at(t[a])];
   }
+  return distance;
+}
+
+/// These, or what the pair had in the reference configuration where that is less.
+double NodeWatch::contact_distance(const Watched& w, double full) const {
+  const auto& t = model_.triangle[at(w.element)];
   const std::vector<Vec3d>& reference = model_.reference_position;
   const Vec3d& p = reference[at(node_)];
   const Vec3d &a = reference[at(t[0])], &b = reference[at(t[1])], &c = reference[at(t[2])];
   const Vec3d from = p - a, side_2 = b - a, side_3 = c - a;
-  const double reach = distance + std::sqrt(std::max(dot(side_2, side_2), dot(side_3, side_3)));
+  const double reach = full + std::sqrt(std::max(dot(side_2, side_2), dot(side_3, side_3)));
   if (dot(from, from) > reach * reach) {
-    return distance;
+    return full;
   }
   const double reference2 = physics::closest_point(p, a, b, c).distance2;
-  return reference2 < distance * distance ? std::sqrt(reference2) : distance;
+  return reference2 < full * full ? std::sqrt(reference2) : full;
 }
 
 /// Series of the node and the corners, these by their weights: what barriers give way is nothing. Elements that share
@@ -342,28 +375,27 @@ void NodeWatch::push(std::span<const model::ContactSide> memory, std::vector<Act
     if (!w.acts) {
       continue;
     }
-    const double distance = contact_distance(w);
-    const bool through = w.is_through(w.side);
-    const double depth = distance - (through ? -w.distance : w.distance);
-    if (!(depth > 0.0)) {
+    if (!(w.depth > 0.0)) {
       continue;
     }
     ActivePair pair;
     const model::ContactLaw& law = law_of(w);
-    pair.stiffness = stiffness(w, law);
+    const double stiff = stiffness(w, law);
+    const physics::Penalty penalty = physics::penalty_of(stiff, law.hardening, w.depth, w.full);
+    pair.stiffness = penalty.stiffness;
     pair.node = node_;
     pair.element = w.element;
     pair.weight = w.closest.weight;
     const Vec3d normal = direction(w);
-    pair.force = (pair.stiffness * depth) * normal;
-    pair.energy = 0.5 * pair.stiffness * depth * depth;
-    pair.depth = distance > 0.0 ? depth / distance : HUGE_VAL;
+    pair.force = penalty.force * normal;
+    pair.energy = penalty.energy;
+    pair.depth = w.reach > 0.0 ? w.depth / w.reach : HUGE_VAL;
     if (law.drag.acts()) {
       if (drags) {
-        drag(w, law.drag, memory, pair);
+        drag(w, law.drag, stiff, memory, pair);
       } else {
         pair.force += w.drag;
-        pair.energy += physics::stored_energy(w.drag, normal, pair.stiffness);
+        pair.energy += physics::stored_energy(w.drag, normal, stiff);
       }
       pair.stiffness *= law.drag.frequency2_factor();
     }
@@ -394,8 +426,8 @@ const model::ContactSide* NodeWatch::drag_before(Index element, std::span<const 
   return nullptr;
 }
 
-void NodeWatch::drag(Watched& w, const physics::DragLaw& law, std::span<const model::ContactSide> memory,
-                     ActivePair& pair) {
+void NodeWatch::drag(Watched& w, const physics::DragLaw& law, double stiffness,
+                     std::span<const model::ContactSide> memory, ActivePair& pair) {
   const model::ContactSide* known = drag_before(w.element, memory);
   if (known != nullptr) {
     handed_on_[static_cast<std::size_t>(known - memory.data())] = 1;
@@ -406,7 +438,7 @@ void NodeWatch::drag(Watched& w, const physics::DragLaw& law, std::span<const mo
   physics::DragPair moving;
   moving.normal = direction(w);
   moving.normal_force = dot(pair.force, moving.normal);
-  moving.stiffness = pair.stiffness;
+  moving.stiffness = stiffness;
   moving.inverse_mass = inverse_mass(node_);
   const auto& t = model_.triangle[at(w.element)];
   for (std::size_t a = 0; a < 3; ++a) {

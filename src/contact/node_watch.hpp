@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "contact/surface.hpp"
+#include "physics/penalty.hpp"
 
 namespace fexp::contact {
 
@@ -15,9 +16,10 @@ struct ActivePair {
   Index element{};
   std::array<double, 3> weight{};
   Vec3d force;          ///< On the node [force]
-  double energy{};      ///< 1/2 k g^2, and that of sticking [force*length]
+  double energy{};      ///< Of the penalty, and of sticking [force*length]
   double dissipated{};  ///< In this step, by friction and damping [force*length]
-  double stiffness{};   ///< [force/length], more by damping; 0 where a pair has parted and only leaves its energy
+  double stiffness{};   ///< Slope of the penalty [force/length], more by damping; 0 where a pair has parted and only
+                        ///< leaves its energy
   double depth{};       ///< Penetration over contact distance [-]
 };
 
@@ -26,10 +28,10 @@ struct ActivePair {
 ///
 /// Gap of node i and element T [W06; REK19 eq. 6-7, whose eq. 6 prints p_N g_N <= 0 where complementarity needs = 0]:
 /// g = side * s - d, with the signed distance s to the closest point of T, the remembered side (+1 or -1), and the
-/// contact distance d, the half thickness of the node plus that of the surface at the closest point. Force k (-g) where
-/// g < 0, along the offset from the closest point, away from it on the remembered side: a node that has come through is
-/// pushed back the way it came. Pairs that are closer than d in the reference configuration take that distance for d,
-/// so that nothing pushes in a mesh as it was built.
+/// contact distance d, the half thickness of the node plus that of the surface at the closest point. A penalty of the
+/// depth -g where g < 0 (physics::penalty_of), along the offset from the closest point, away from it on the remembered
+/// side: a node that has come through is pushed back the way it came. Pairs that are closer than d in the reference
+/// configuration take that distance for d, so that nothing pushes in a mesh as it was built.
 class NodeWatch {
  public:
   /// Where `before` is `now`, nothing has moved since the sides were remembered. They are then taken as they are, so
@@ -59,11 +61,18 @@ class NodeWatch {
     bool rim{};              ///< The closest point lies on the rim of an open surface
     bool acts{};             ///< No element that shares the feature is closer
     Index closer{no_index};  ///< The closest of those, when it does not act
+    double full{};           ///< Contact distance by the thicknesses alone, where it acts [length]
+    double reach{};          ///< Contact distance, where it acts [length]
+    double depth{};          ///< Of the node, where it acts [length]
     Vec3d drag;              ///< Friction and damping on the node [force]
 
     /// Whether a node that belongs on `home` has come through here. Off the rim of an open surface and off the tip of a
     /// sharp fold there is no other side to come from.
     [[nodiscard]] bool is_through(int home) const noexcept { return !rim && view.agreed && view.side != home; }
+    [[nodiscard]] bool is_nearer(const Watched& other) const noexcept {
+      return closest.distance2 < other.closest.distance2 ||
+             (closest.distance2 == other.closest.distance2 && element < other.element);
+    }
   };
 
   void recall(std::span<const model::ContactSide> memory);
@@ -71,9 +80,10 @@ class NodeWatch {
   void follow(const model::ContactSide& known);
   void measure();
   void decide_sides(std::span<const model::ContactSide> memory);
+  void find_depths();
   void leave_one_of_smooth_neighbours();
   void push(std::span<const model::ContactSide> memory, std::vector<ActivePair>& active);
-  void drag(Watched& watched, const physics::DragLaw& law, std::span<const model::ContactSide> memory,
+  void drag(Watched& watched, const physics::DragLaw& law, double stiffness, std::span<const model::ContactSide> memory,
             ActivePair& pair);
   [[nodiscard]] const model::ContactSide* drag_before(Index element, std::span<const model::ContactSide> memory) const;
   void part(std::span<const model::ContactSide> memory, std::vector<ActivePair>& active);
@@ -83,9 +93,11 @@ class NodeWatch {
   [[nodiscard]] Watched measured(Index element);
   [[nodiscard]] bool could_come_through(const Watched& watched, int home);
   [[nodiscard]] int inherited_side(Index element) const;
-  [[nodiscard]] double contact_distance(const Watched& watched) const;
+  [[nodiscard]] double full_distance(const Watched& watched) const;
+  [[nodiscard]] double contact_distance(const Watched& watched, double full) const;
   [[nodiscard]] const model::ContactLaw& law_of(const Watched& watched) const;
   [[nodiscard]] double stiffness(const Watched& watched, const model::ContactLaw& law) const;
+  [[nodiscard]] bool hides(const Watched& other, const Watched& watched) const;
   [[nodiscard]] static Vec3d direction(const Watched& watched);
   [[nodiscard]] bool are_neighbours(const Watched& a, const Watched& b) const;
   [[nodiscard]] bool share_corner(Index a, Index b) const;

@@ -70,6 +70,7 @@ ContactLaw law_of(const ContactSettings& contact, const ContactPair& pair) {
   ContactLaw law;
   law.drag = {pair.friction.value_or(contact.friction), pair.damping.value_or(contact.damping)};
   law.stiffness = pair.stiffness.value_or(contact.stiffness);
+  law.hardening = contact.hardening.value_or(law.stiffness >= 0.0 ? 0.0 : ContactSettings::usual_hardening);
   law.scale = pair.penalty_scale ? *pair.penalty_scale / contact.penalty_scale : 1.0;
   return law;
 }

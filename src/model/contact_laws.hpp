@@ -13,6 +13,7 @@ struct ContactLaw {
   physics::DragLaw drag;
   double stiffness{-1.0};  ///< Penalty stiffness of a pair [force/length]; negative: that of the nodes in series
   double scale{1.0};       ///< Factor on the stiffness of the nodes in series [-]
+  double hardening{};      ///< See physics::penalty_of [-]
 };
 
 /// The laws of all pairs of bodies. Bodies that the deck names alike are a group.

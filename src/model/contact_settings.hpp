@@ -43,14 +43,18 @@ struct ContactSettings {
   /// What becomes of shells that are nearer than their thicknesses allow at the start.
   static constexpr std::array<std::string_view, 2> treatments{"keep", "remove"};
 
+  static constexpr double usual_hardening = 2.0;
+
   bool enabled{true};
-  bool self{true};            ///< Bodies touch themselves.
-  bool edges{true};           ///< Edges touch edges.
-  double friction{0.0};       ///< Coulomb's coefficient [-]
-  double damping{0.0};        ///< Normal damping, as a part of the critical one of a pair [-]
-  std::string penalty{};      ///< One of `penalties`; empty: "given" with a stiffness, "step" without.
-  double penalty_scale{1.0};  ///< Factor on the stiffness of nodes [-]
-  double stiffness{-1.0};     ///< Penalty stiffness per pair [force/length]; negative: none is given.
+  bool self{true};                    ///< Bodies touch themselves.
+  bool edges{true};                   ///< Edges touch edges.
+  double friction{0.0};               ///< Coulomb's coefficient [-]
+  double damping{0.0};                ///< Normal damping, as a part of the critical one of a pair [-]
+  std::string penalty{};              ///< One of `penalties`; empty: "given" with a stiffness, "step" without.
+  double penalty_scale{1.0};          ///< Factor on the stiffness of nodes [-]
+  std::optional<double> hardening{};  ///< How much stiffer contact becomes with depth [-]; none: `usual_hardening`,
+                                      ///< or 0 where a stiffness is given.
+  double stiffness{-1.0};             ///< Penalty stiffness per pair [force/length]; negative: none is given.
   std::vector<std::array<std::string, 2>> exclude;  ///< Pairs of bodies that do not touch; twice the same: itself.
   std::vector<ContactPair> pairs{};
   std::string initial_penetrations{"keep"};  ///< One of `treatments`
@@ -70,6 +74,11 @@ struct ContactSettings {
             &ContactSettings::penalty, Choices(penalties)},
       Field{"penalty_scale", "-", "Factor on the penalty stiffness of nodes.", &ContactSettings::penalty_scale,
             positive},
+      Field{"hardening", "-",
+            "How much stiffer contact becomes with depth: a pair at its full contact distance, where the mid-surfaces "
+            "meet, has 1 + `hardening` times the energy of a linear penalty; 0: linear. When left out: 2, or 0 where a "
+            "stiffness is given.",
+            &ContactSettings::hardening, non_negative},
       Field{"stiffness", "force/length", "Penalty stiffness of every pair.", &ContactSettings::stiffness, positive},
       Field{"exclude", "-", "Pairs of body names that do not touch; the same name twice: no self-contact.",
             &ContactSettings::exclude},

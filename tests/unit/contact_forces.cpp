@@ -107,6 +107,7 @@ TEST(contact_force, grows_with_the_stiffness_of_the_surface_and_is_the_same_from
     x.x *= x.x;  // cells of growing size
   }
   Tip tip(m, 0.3);
+  tip.model.contact_laws.laws[0].hardening = 0.0;
   const auto& k = tip.model.contact_stiffness;
   const auto& x = tip.model.reference_position;
   const auto stiffness_above = [&](const Vec3d& foot) {

@@ -159,6 +159,7 @@ TEST(contact_timing, bodies_that_remember_sides_of_each_other_share_an_island_ho
   d.contact.enabled = true;
   d.contact.self = false;
   d.contact.penalty_scale = 1e-3;
+  d.contact.hardening = 0.0;
   d.run.energy_drift_limit = 1.0e6;
   d.run.epoch_steps = 2;
   test::add_body(d, "light", test::plate(3.0, 3.0, 3, 3)).translate = {-1.5, -1.5, 0.0};

@@ -260,7 +260,7 @@ void Histories::write_bodies(const cluster::Simulation& simulation) {
     std::vector<Cell> cells = first_cells(simulation.state());
     cells.emplace_back(std::string_view(body.name));
     io::add_vector_cells(cells, sums.centre);
-    io::add_vector_cells(cells, (1.0 / body.mass) * diagnostics.momenta.linear);
+    io::add_vector_cells(cells, (1.0 / body.moving_mass) * diagnostics.momenta.linear);
     // About the centre of mass.
     io::add_vector_cells(cells, diagnostics.momenta.angular - cross(sums.centre, diagnostics.momenta.linear));
     io::add_vector_cells(cells, sums.contact_force);

@@ -239,6 +239,13 @@ void NodeWatch::decide_sides(std::span<const model::ContactSide> memory) {
   }
 }
 
+/// Whether a tie holds the node at a corner of the element, or that at the node.
+bool NodeWatch::is_joined_with(Index element) const {
+  return !model_.ties.empty() && std::ranges::any_of(model_.triangle[at(element)], [this](Index corner) {
+    return model_.ties.are_joined(node_, corner);
+  });
+}
+
 bool NodeWatch::share_corner(Index a, Index b) const {
   const auto& s = model_.triangle[at(a)];
   const auto& t = model_.triangle[at(b)];
@@ -345,7 +352,7 @@ void NodeWatch::push(std::span<const model::ContactSide> memory, std::vector<Act
     const double distance = contact_distance(w);
     const bool through = w.is_through(w.side);
     const double depth = distance - (through ? -w.distance : w.distance);
-    if (!(depth > 0.0)) {
+    if (!(depth > 0.0) || is_joined_with(w.element)) {
       continue;
     }
     ActivePair pair;

@@ -21,6 +21,8 @@ namespace {
 constexpr double tie_room = 1.05;
 /// Weights below this count as zero: such a corner carries nothing.
 constexpr double least_weight = 1.0e-12;
+/// Arms shorter than this part of the node's elements, or of its place, are none: they would be lost in rounding.
+constexpr double shortest_arm = 1.0e-9, position_rounding = 1.0e-12;
 constexpr std::uint8_t every_dof = 0x3F, every_translation = 0x07;
 
 class TieBuilder {
@@ -181,6 +183,9 @@ class TieBuilder {
       tie.weight[a] /= sum;
       tie.arm -= tie.weight[a] * model_.reference_position[at(corner[a])];
     }
+    const double shortest =
+        std::max(shortest_arm * model_.node_size[at(n)], position_rounding * norm(model_.reference_position[at(n)]));
+    tie.arm = norm(tie.arm) > shortest ? tie.arm : Vec3d{};
     tie.length = norm(tie.arm);
     return tie;
   }

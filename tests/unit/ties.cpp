@@ -14,6 +14,7 @@
 namespace fexp {
 namespace {
 
+using test::add_body;
 using test::rubber;
 
 constexpr double thickness = 0.05;
@@ -249,6 +250,7 @@ TEST(ties, may_hang_on_carriers_that_are_driven) {
   }
   name_nodes(d, "lower", "lower");
   d.prescribed.push_back({"lower", "x", 3.0, "", {}});
+  d.prescribed.push_back({"lower", "z", 0.0, "", {}});
   d.prescribed.push_back({"lower", "ry", 2.0, "", {}});
   const model::Model model = test::build(d);
   cluster::Simulation simulation(model, solve::KernelChoice::automatic);

@@ -32,10 +32,10 @@ struct Workspace {
   SelectedKernel kernel;
   std::vector<physics::ShellStiffness> sections;  // [sections]
   Patches patches;
-  AlignedVector<NodeForce> border_force;          // [shares of border nodes]
+  AlignedVector<NodeForce> border_force;  // [shares of border nodes]
   /// Shape [nodes]; 1 for what ties carry of a node, so that its acceleration is the force, until that is handed on.
   AlignedVector<InverseInertia> inverse_inertia;
-  contact::NodeContact contact;                   // At the last evaluated positions
+  contact::NodeContact contact;  // At the last evaluated positions
   /// Loads and gravity at the last evaluated instant, shape [nodes]; empty when the model has none.
   std::vector<NodalAction> load;
   std::vector<BodyActions> actions;                // [bodies]

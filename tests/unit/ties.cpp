@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cluster/simulation.hpp"
+#include "contact/initial_penetrations.hpp"
 #include "model/tie_motion.hpp"
 #include "quality/assess.hpp"
 #include "support/descriptions.hpp"
@@ -122,6 +123,44 @@ TEST(ties, hand_all_mass_to_carriers_and_keep_the_sum) {
   const double arms = thickness * thickness * model.bodies[1].mass;
   EXPECT_NEAR(sum(model.ties.inertia), sum(model.inertia) + arms, 1e-12 * sum(model.inertia));
   EXPECT_NEAR(model.bodies[0].moving_mass, model.bodies[0].mass + model.bodies[1].mass, 1e-12 * model.bodies[0].mass);
+}
+
+TEST(ties, are_no_penetrations_at_the_start) {
+  // Nearer than thicknesses allow, and a web that stands on the mid-surface and, at its ends, cuts it.
+  auto d = glued(0.5 * thickness);
+  d.contact.enabled = true;
+  EXPECT_TRUE(contact::find_initial_penetrations(test::build(d), test::build(d).reference_position).pairs.empty());
+  model::BodyDescription& web = add_body(d, "web", sheet(0.3, 0.2, 3, 2));
+  web.rotate.push_back({{1.0, 0.0, 0.0}, -90.0, {}});
+  web.translate = {0.3, 0.05, 0.001};
+  test::add_box_set(d, "edge", {0.0, 0.0, -0.01}, {1.0, 0.1, 0.01});
+  d.node_sets.back().bodies = {"web"};
+  tie(d, "edge", {"lower"});
+  const model::Model tied = test::build(d);
+  EXPECT_TRUE(contact::find_initial_penetrations(tied, tied.reference_position).crossings.empty());
+  d.ties.clear();
+  const model::Model untied = test::build(d);
+  EXPECT_FALSE(contact::find_initial_penetrations(untied, untied.reference_position).pairs.empty());
+  EXPECT_FALSE(contact::find_initial_penetrations(untied, untied.reference_position).crossings.empty());
+}
+
+TEST(ties, are_told_as_what_joins_bodies) {
+  auto d = glued(0.0);
+  d.bodies[1].mesh = sheet(0.5, 0.3, 3, 2);  // Of the same cells as the lower one, on whose nodes its own lie
+  d.bodies[1].translate = {1.0 / 6.0, 0.15, 0.0};
+  const auto kinds_of = [](const model::Description& described) {
+    const model::Model model = test::build(described);
+    std::vector<std::string_view> kinds;
+    for (const auto& found : {quality::near_nodes(model), quality::overlapping_shells(model)}) {
+      for (const quality::Finding& finding : found) {
+        kinds.push_back(finding.kind);
+      }
+    }
+    return kinds;
+  };
+  EXPECT_TRUE(kinds_of(d).empty());
+  d.ties.clear();
+  EXPECT_EQ(kinds_of(d), (std::vector<std::string_view>{"unjoined_bodies", "overlapping_shells"}));
 }
 
 TEST(ties, that_are_hinges_leave_nodes_their_own_inertia) {

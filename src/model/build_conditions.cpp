@@ -230,13 +230,6 @@ void find_body_ranges(Model& model) {
     body.forces = range_in(model.forces, body.nodes, node_of);
     body.ties = range_in(model.ties.ties, body.nodes, node_of);
     body.tied_blocks = range_in(model.ties.blocks, body.blocks, [](const TiedBlock& b) { return b.block; });
-    body.moving_mass = 0.0;
-    for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
-      body.moving_mass += model.moving_mass(n);
-    }
-    if (body.rigid != no_index) {
-      body.moving_mass = model.rigid_bodies[at(body.rigid)].mass;
-    }
     body.pressure = range_in(model.pressure, body.elements, [](const PressureLoad& p) { return p.element; });
     body.barrier = body.fixed.size() == body.nodes.size() &&
                    std::all_of(model.fixed.begin() + body.fixed.begin, model.fixed.begin() + body.fixed.end,

@@ -65,6 +65,13 @@ class TieBuilder {
     }
   }
 
+  /// Puts nodes that hang on held ones among these.
+  void hold() {
+    model_.fixed.insert(model_.fixed.end(), held_.begin(), held_.end());
+    std::stable_sort(model_.fixed.begin(), model_.fixed.end(),
+                     [](const FixedNode& a, const FixedNode& b) { return a.node < b.node; });
+  }
+
   /// No carrier is tied itself: forces are handed on once.
   void check_chains() {
     for (const Tie& tie : model_.ties.ties) {
@@ -90,9 +97,13 @@ class TieBuilder {
   }
 
   template <class Item>
+  [[nodiscard]] static auto first_at(const std::vector<Item>& items, Index node) {
+    return std::lower_bound(items.begin(), items.end(), node, [](const Item& item, Index n) { return item.node < n; });
+  }
+
+  template <class Item>
   [[nodiscard]] static bool has(const std::vector<Item>& items, Index node) {
-    const auto found =
-        std::lower_bound(items.begin(), items.end(), node, [](const Item& item, Index n) { return item.node < n; });
+    const auto found = first_at(items, node);
     return found != items.end() && found->node == node;
   }
 
@@ -156,13 +167,23 @@ class TieBuilder {
     }
     tie_of_[at(n)] = number;
     ++result.tied;
-    const Body& carrier = model_.bodies[at(model_.node_body[at(corner[0])])];
-    if (carrier.barrier) {
-      model_.fixed.push_back({n, given.rotations ? every_dof : every_translation});
+    if (are_held(corner, found.closest.weight)) {
+      held_.push_back({n, given.rotations ? every_dof : every_translation});
     } else {
       model_.ties.ties.push_back(made(given, number, n, corner, found.closest));
     }
     return true;
+  }
+
+  /// Whether the carriers hold the node, as they do not move nor turn.
+  [[nodiscard]] bool are_held(const std::array<Index, 3>& corner, const std::array<double, 3>& weight) const {
+    bool held = true;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto found = first_at(model_.fixed, corner[a]);
+      const bool all = found != model_.fixed.end() && found->node == corner[a] && found->mask == every_dof;
+      held = held && (all || !(weight[a] > least_weight));
+    }
+    return held;
   }
 
   [[nodiscard]] Tie made(const TieDescription& given, Index number, Index n, const std::array<Index, 3>& corner,
@@ -194,6 +215,7 @@ class TieBuilder {
   Model& model_;
   ErrorList& errors_;
   Lookup lookup_;
+  std::vector<FixedNode> held_;
   std::vector<Index> tie_of_;  // [nodes]: into Description::ties
 };
 
@@ -231,9 +253,8 @@ void build_ties(const Description& description, Model& model, ErrorList& errors)
   for (std::size_t i = 0; i < description.ties.size(); ++i) {
     builder.add(static_cast<Index>(i));
   }
-  const auto by_node = [](const auto& a, const auto& b) { return a.node < b.node; };
-  std::sort(model.ties.ties.begin(), model.ties.ties.end(), by_node);
-  std::stable_sort(model.fixed.begin(), model.fixed.end(), by_node);
+  std::sort(model.ties.ties.begin(), model.ties.ties.end(), [](const Tie& a, const Tie& b) { return a.node < b.node; });
+  builder.hold();
   builder.check_chains();
   join(model);
   weigh_ties(model);

@@ -8,8 +8,8 @@
 namespace fexp::model {
 
 /// Ties the nodes of the deck's ties to the closest triangles, with masses handed to their carriers. Conditions, masses
-/// and rigid bodies must be there. Nodes tied to barriers are held instead: body ranges of conditions have to be found
-/// again after this.
+/// and rigid bodies must be there. Nodes tied to nodes that are held altogether are held instead: body ranges of
+/// conditions have to be found again after this.
 void build_ties(const Description& description, Model& model, ErrorList& errors);
 
 /// Hands the masses of tied nodes to carriers, and says in which blocks omega^2 is larger by that. Rigid bodies are

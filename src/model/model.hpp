@@ -63,7 +63,6 @@ struct Body {
   IndexRange tied_blocks;  ///< Into Ties::blocks
   bool barrier{};          ///< Every node is held in all degrees of freedom: part of every island, joins none.
   double mass{};           ///< [mass]
-  double moving_mass{};    ///< Of its nodes by Model::moving_mass [mass]
   Index rigid{no_index};   ///< Into Model::rigid_bodies; no_index when the body deforms.
   /// Density of the elements over that of their material; not 1 in a rigid body whose mass is given.
   double density_factor{1.0};

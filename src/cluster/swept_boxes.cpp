@@ -70,10 +70,11 @@ double prescribed_speed(const model::Model& model, const model::Body& body, doub
 /// The same with what nodes of the body have from those that they are tied to.
 double driven_speed(const model::Model& model, Index body, double span) {
   double speed = prescribed_speed(model, model.bodies[at(body)], span, 0.0);
-  for (const model::TiedBodies& tied : model.ties.bodies) {
-    if (tied.body == body) {
-      speed += prescribed_speed(model, model.bodies[at(tied.carrier)], span, tied.arm);
-    }
+  const std::vector<model::TiedBodies>& bodies = model.ties.bodies;
+  auto tied = std::lower_bound(bodies.begin(), bodies.end(), body,
+                               [](const model::TiedBodies& pair, Index wanted) { return pair.body < wanted; });
+  for (; tied != bodies.end() && tied->body == body; ++tied) {
+    speed += prescribed_speed(model, model.bodies[at(tied->carrier)], span, tied->arm);
   }
   return speed;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstddef>
 
 #include "base/pack.hpp"
@@ -16,10 +17,9 @@ void IslandSolver::assign_ties(const model::Model& model) {
     for (Index t = owner.ties.begin; t < owner.ties.end; ++t) {
       IslandTie& tie = ties_.emplace_back();
       tie.tie = t;
-      for (const RigidPart& part : rigid_) {
-        if (part.rigid == model.ties.ties[at(t)].rigid) {
-          tie.rigid_piece = part.pieces.begin;
-        }
+      const Index rigid = model.ties.ties[at(t)].rigid;
+      if (rigid != no_index) {
+        tie.rigid_piece = std::ranges::find(rigid_, rigid, &RigidPart::rigid)->pieces.begin;
       }
     }
     for (Index b = owner.tied_blocks.begin; b < owner.tied_blocks.end; ++b) {

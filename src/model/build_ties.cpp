@@ -108,31 +108,32 @@ class TieBuilder {
   }
 
   bool may_be_tied(const TieDescription& given, const std::vector<Index>& surface) {
-    for (const Index n : lookup_.nodes(given.set)) {
-      const Index index = model_.node_body[at(n)];
-      const Body& body = model_.bodies[at(index)];
-      if (std::binary_search(surface.begin(), surface.end(), index)) {
-        errors_.add(given.place,
-                    fmt::format("tie \"{}\": set \"{}\" has nodes of body \"{}\", which is its surface", given.name,
-                                given.set, body.name),
-                    "nodes of other bodies", "choose other nodes, or make the two parts of the body two bodies");
-        return false;
-      }
-      if (body.rigid != no_index) {
-        errors_.add(given.place,
-                    fmt::format("tie \"{}\": set \"{}\" has nodes of body \"{}\", which is rigid", given.name,
-                                given.set, body.name),
-                    "nodes of bodies that deform", "swap the sides: tie nodes of the other body to the rigid one");
-        return false;
-      }
-      if (has(model_.fixed, n) || has(model_.prescribed, n) || has(model_.symmetry, n) || has(model_.oblique, n)) {
-        errors_.add(given.place,
-                    fmt::format("tie \"{}\": {} has a condition besides (fixed, prescribed or symmetry)", given.name,
-                                text_of(n)),
-                    "nodes that only the tie holds",
-                    "take the node out of one of the sets, or swap the sides of the tie");
-        return false;
-      }
+    return std::ranges::all_of(lookup_.nodes(given.set), [&](Index n) { return may_be_tied(given, surface, n); });
+  }
+
+  bool may_be_tied(const TieDescription& given, const std::vector<Index>& surface, Index n) {
+    const Index index = model_.node_body[at(n)];
+    const Body& body = model_.bodies[at(index)];
+    if (std::binary_search(surface.begin(), surface.end(), index)) {
+      errors_.add(given.place,
+                  fmt::format("tie \"{}\": set \"{}\" has nodes of body \"{}\", which is its surface", given.name,
+                              given.set, body.name),
+                  "nodes of other bodies", "choose other nodes, or make the two parts of the body two bodies");
+      return false;
+    }
+    if (body.rigid != no_index) {
+      errors_.add(given.place,
+                  fmt::format("tie \"{}\": set \"{}\" has nodes of body \"{}\", which is rigid", given.name, given.set,
+                              body.name),
+                  "nodes of bodies that deform", "swap the sides: tie nodes of the other body to the rigid one");
+      return false;
+    }
+    if (has(model_.fixed, n) || has(model_.prescribed, n) || has(model_.symmetry, n) || has(model_.oblique, n)) {
+      errors_.add(
+          given.place,
+          fmt::format("tie \"{}\": {} has a condition besides (fixed, prescribed or symmetry)", given.name, text_of(n)),
+          "nodes that only the tie holds", "take the node out of one of the sets, or swap the sides of the tie");
+      return false;
     }
     return true;
   }
@@ -199,15 +200,14 @@ class TieBuilder {
       tie.weight[a] = closest.weight[a] > least_weight ? closest.weight[a] : 0.0;
       sum += tie.weight[a];
     }
-    tie.arm = model_.reference_position[at(n)];
+    Vec3d arm = model_.reference_position[at(n)];
     for (std::size_t a = 0; a < 3; ++a) {
       tie.weight[a] /= sum;
-      tie.arm -= tie.weight[a] * model_.reference_position[at(corner[a])];
+      arm -= tie.weight[a] * model_.reference_position[at(corner[a])];
     }
     const double shortest =
         std::max(shortest_arm * model_.node_size[at(n)], position_rounding * norm(model_.reference_position[at(n)]));
-    tie.arm = norm(tie.arm) > shortest ? tie.arm : Vec3d{};
-    tie.length = norm(tie.arm);
+    tie.length = norm(arm) > shortest ? norm(arm) : 0.0;
     return tie;
   }
 

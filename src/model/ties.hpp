@@ -19,8 +19,7 @@ struct Tie {
   Index node{};
   std::array<Index, 3> carrier{};
   std::array<double, 3> weight{};
-  Vec3d arm;              ///< From the point of the triangle to the node, in the reference configuration [length]
-  double length{};        ///< Of the arm [length]
+  double length{};        ///< Of the arm from the point of the triangle to the node [length]
   bool rotations{};       ///< The node turns with the carriers; else freely
   Index description{};    ///< Into Description::ties
   Index rigid{no_index};  ///< Into Model::rigid_bodies, where the carriers are of a rigid body

@@ -173,6 +173,13 @@ CASES = {
                                         "displacement = 1.0")),
         "Axes that span no plane": Case(('set = "rim"', 'set = "rim"\ndofs = ["x"]\n'
                                          "axes = { x = [1.0, 0.0, 0.0], xy = [2.0, 0.0, 0.0] }")),
+        "A tie whose nodes are too far away": Case(
+            ('[[plane]]', '[[node_set]]\nname = "skin of the ball"\nbodies = ["ball"]\n\n'
+                          '[[tie]]\nname = "weld"\nset = "skin of the ball"\nsurface = ["plate"]\n\n[[plane]]')),
+        "A tied node that has a condition": Case(
+            ('[[plane]]', '[[tie]]\nname = "weld"\nset = "rim"\nsurface = ["ball"]\n\n[[plane]]')),
+        "A body that is tied to itself": Case(
+            ('[[plane]]', '[[tie]]\nname = "weld"\nset = "rim"\nsurface = ["plate"]\n\n[[plane]]')),
         "A part of a rigid body is held": Case(('name = "plate"', 'name = "plate"\nrigid = true')),
         "A mass of a body that deforms": Case(('name = "plate"', 'name = "plate"\nmass = 2.0')),
         "A wall with a velocity and a displacement": Case(
@@ -237,7 +244,7 @@ CASES = {
         "No thread": Case(options=("deck.toml", "--threads", "0")),
         "An unknown command": Case(command="rum"),
         "Threads that are no number": Case(command="bench", options=("--threads", "1,many")),
-        "No such case": Case(command="verify", options=("36",)),
+        "No such case": Case(command="verify", options=("99",)),
         "No such benchmark": Case(command="bench", options=("--filter", "sphere_")),
         "Something that is no result": Case(command="info", options=("deck.toml",)),
         "A comparison with nothing": Case(command="compare", options=("a.run", "b.run")),

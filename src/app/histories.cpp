@@ -92,9 +92,10 @@ bool is_named(const model::Body& body, const std::vector<std::string>& names) {
   return std::ranges::any_of(names, [&](const std::string& name) { return name == body.name || name == body.family; });
 }
 
-/// The body's centre of mass and the contact force on it, summed in the order of its nodes.
+/// The body's centre of mass, the velocity of that and the contact force on the body, summed in the order of its nodes.
 struct BodySums {
   Vec3d centre;
+  Vec3d velocity;  ///< Ties give its momentum to others, or those of others to it
   Vec3d contact_force;
 };
 
@@ -102,7 +103,9 @@ BodySums sums_of(const cluster::Simulation& simulation, const model::Body& body)
   const model::Model& model = simulation.model();
   BodySums sums;
   for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
-    sums.centre += (model.mass[at(n)] / body.mass) * simulation.state().motion[at(n)].position;
+    const model::NodeMotion& motion = simulation.state().motion[at(n)];
+    sums.centre += (model.mass[at(n)] / body.mass) * motion.position;
+    sums.velocity += (model.mass[at(n)] / body.mass) * motion.velocity;
     sums.contact_force += simulation.workspace().contact.force[at(n)];
   }
   return sums;
@@ -260,7 +263,7 @@ void Histories::write_bodies(const cluster::Simulation& simulation) {
     std::vector<Cell> cells = first_cells(simulation.state());
     cells.emplace_back(std::string_view(body.name));
     io::add_vector_cells(cells, sums.centre);
-    io::add_vector_cells(cells, (1.0 / body.mass) * diagnostics.momenta.linear);
+    io::add_vector_cells(cells, model_.ties.empty() ? (1.0 / body.mass) * diagnostics.momenta.linear : sums.velocity);
     // About the centre of mass.
     io::add_vector_cells(cells, diagnostics.momenta.angular - cross(sums.centre, diagnostics.momenta.linear));
     io::add_vector_cells(cells, sums.contact_force);

@@ -24,6 +24,7 @@
 #include "io/output_error.hpp"
 #include "io/summary.hpp"
 #include "parallel/parallel.hpp"
+#include "quality/assess.hpp"
 
 namespace fexp::app {
 
@@ -90,6 +91,9 @@ void open_output(const Drive& run, const cluster::Simulation& simulation, std::o
                             FEXP_VERSION, loaded.model.element_count(), loaded.model.node_count(),
                             loaded.model.body_count(), run.ranks.size(), parallel::thread_count(),
                             simulation.workspace().kernel.name));
+    for (const quality::Finding& finding : quality::far_tied_nodes(loaded.model)) {
+      output->log("warning: " + finding.message);
+    }
     for (const std::string& line : penetration_lines(loaded.penetrations)) {
       output->log(line);
     }

@@ -96,6 +96,9 @@ io::Summary summarise(const Case& loaded, const cluster::Simulation& simulation,
   for (const model::AddedMass& part : model::added_masses(model)) {
     summary.added_mass.push_back({part.body, part.part, part.mass, part.added});
   }
+  for (const model::TieResult& tie : model.ties.results) {
+    summary.ties.push_back({tie.name, tie.tied, static_cast<std::int64_t>(tie.far.size())});
+  }
   summary.initial_penetrations = loaded.penetrations;
   summary.placement = placement_of(simulation);
   summary.network = network_of(simulation);
@@ -117,6 +120,10 @@ std::string summary_text(const io::Summary& s, const io::UnitNames& units, const
   }
   for (const io::Summary::AddedMass& part : s.added_mass) {
     text += added_mass_text(part, units.of("mass"));
+  }
+  for (const io::Summary::Tie& tie : s.ties) {
+    text += fmt::format("  tie        \"{}\" holds {} nodes{}\n", tie.name, tie.tied,
+                        tie.far > 0 ? fmt::format("; warning: {} are too far from its surface and free", tie.far) : "");
   }
   for (const std::string& line : penetration_lines(s.initial_penetrations)) {
     text += "  " + line + "\n";

@@ -53,6 +53,9 @@ std::vector<Island> find_islands(const model::Model& model, std::span<const Box>
       joining.push_back(pair);
     }
   }
+  for (const model::TiedBodies& tied : model.ties.bodies) {
+    joining.emplace_back(tied.body, tied.carrier);
+  }
   const Adjacency graph = adjacency(swept.size(), joining);
 
   std::vector<Island> islands;

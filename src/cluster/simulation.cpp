@@ -36,6 +36,9 @@ std::uint64_t fingerprint(const model::Model& model) {
   ByteWriter out;
   out.value(parts);
   out.value(static_cast<std::uint64_t>(model.bodies.size()));
+  if (!model.ties.empty()) {
+    out.value(hash_bytes(std::as_bytes(std::span(model.ties.mass))));
+  }
   out.value(model.run.duration);
   out.value(model.run.safety);
   return hash_bytes(out.bytes());

@@ -39,28 +39,44 @@ double largest_slope(const model::Model& model, Index curve) {
   return largest;
 }
 
-/// Largest speed that prescribed motion can give a node of the body within `span`, besides the one it has
-/// [length/time].
-double prescribed_speed(const model::Model& model, const model::Body& body, double span) {
-  const auto rate_of = [&](const model::PrescribedNode& p) {
-    return std::abs(p.value) * (p.kind == model::PrescribedKind::displacement   ? largest_slope(model, p.curve)
-                                : p.kind == model::PrescribedKind::acceleration ? largest_value(model, p.curve) * span
-                                                                                : largest_value(model, p.curve));
-  };
+/// Bound of the speed that the prescribed motion `p` gives within `span`, besides the speed there is [length/time] or
+/// [1/time].
+double prescribed_rate(const model::Model& model, const model::PrescribedNode& p, double span) {
+  return std::abs(p.value) * (p.kind == model::PrescribedKind::displacement   ? largest_slope(model, p.curve)
+                              : p.kind == model::PrescribedKind::acceleration ? largest_value(model, p.curve) * span
+                                                                              : largest_value(model, p.curve));
+}
+
+/// Largest speed that prescribed motion can give a node of the body within `span`, besides the one it has, or a node at
+/// the end of an arm at one of them [length/time].
+double prescribed_speed(const model::Model& model, const model::Body& body, double span, double arm) {
   double translation = 0.0, turn = 0.0;
   for (Index i = body.prescribed.begin; i < body.prescribed.end; ++i) {
     const model::PrescribedNode& p = model.prescribed[at(i)];
-    translation = p.angular() ? translation : std::max(translation, rate_of(p));
+    double& largest = p.angular() ? turn : translation;
+    largest = std::max(largest, (p.angular() ? arm : 1.0) * prescribed_rate(model, p, span));
   }
   if (body.rigid != no_index) {
     const model::RigidBody& rigid = model.rigid_bodies[at(body.rigid)];
     for (const model::PrescribedNode& p : rigid.prescribed) {
       double& largest = p.angular() ? turn : translation;
-      largest = std::max(largest, p.angular() ? rigid.radius * rate_of(p) : rate_of(p));
+      largest = std::max(largest, (p.angular() ? rigid.radius : 1.0) * prescribed_rate(model, p, span));
     }
   }
   // Up to three components of each may be prescribed.
   return std::sqrt(3.0) * (translation + turn);
+}
+
+/// The same with what nodes of the body have from those that they are tied to.
+double driven_speed(const model::Model& model, Index body, double span) {
+  double speed = prescribed_speed(model, model.bodies[at(body)], span, 0.0);
+  const std::vector<model::TiedBodies>& bodies = model.ties.bodies;
+  auto tied = std::lower_bound(bodies.begin(), bodies.end(), body,
+                               [](const model::TiedBodies& pair, Index wanted) { return pair.body < wanted; });
+  for (; tied != bodies.end() && tied->body == body; ++tied) {
+    speed += prescribed_speed(model, model.bodies[at(tied->carrier)], span, tied->arm);
+  }
+  return speed;
 }
 
 double largest_edge(const Box& box) {
@@ -111,8 +127,7 @@ double travel_allowance(const model::Model& model, Index body, const BodyExtent&
     return 0.0;
   }
   const auto count = static_cast<double>(steps);
-  const double speed =
-      extent.speed + 0.5 * dt * extent.acceleration + prescribed_speed(model, model.bodies[at(body)], dt * count);
+  const double speed = extent.speed + 0.5 * dt * extent.acceleration + driven_speed(model, body, dt * count);
   return velocity_margin * speed * dt * count + free_play * extent.size;
 }
 

@@ -279,6 +279,32 @@ Index body_of_second(const model::Model& model, const InitialPenetration& p) {
   return body_of_element(model, p.of_edges ? p.second / 3 : p.second);
 }
 
+/// Whether a tie joins one of the nodes with a node of the body: there surfaces are meant to be near.
+bool are_tied_to(const model::Model& model, std::span<const Index> nodes, Index body) {
+  const auto& joined = model.ties.joined;
+  return std::ranges::any_of(nodes, [&](Index node) {
+    auto pair = std::lower_bound(joined.begin(), joined.end(), std::pair{node, Index{}});
+    while (pair != joined.end() && pair->first == node && model.node_body[at(pair->second)] != body) {
+      ++pair;
+    }
+    return pair != joined.end() && pair->first == node;
+  });
+}
+
+bool is_at_tie(const model::Model& model, const InitialPenetration& p) {
+  const Index body = body_of_first(model, p), other = body_of_second(model, p);
+  if (p.of_edges) {
+    return are_tied_to(model, ends_of(model, p.first), other) || are_tied_to(model, ends_of(model, p.second), body);
+  }
+  return are_tied_to(model, std::span(&p.first, 1), other) || are_tied_to(model, model.triangle[at(p.second)], body);
+}
+
+bool is_at_tie(const model::Model& model, const Crossing& crossing) {
+  const Index body = body_of_element(model, crossing.edge / 3), other = body_of_element(model, crossing.element);
+  return are_tied_to(model, ends_of(model, crossing.edge), other) ||
+         are_tied_to(model, model.triangle[at(crossing.element)], body);
+}
+
 }  // namespace
 
 InitialPenetrations find_initial_penetrations(const model::Model& model, std::span<const Vec3d> position) {
@@ -293,6 +319,10 @@ InitialPenetrations find_initial_penetrations(const model::Model& model, std::sp
     found.pairs.insert(found.pairs.end(), edges.begin(), edges.end());
   }
   found.crossings = finder.crossing_edges();
+  if (!model.ties.empty()) {
+    std::erase_if(found.pairs, [&](const InitialPenetration& p) { return is_at_tie(model, p); });
+    std::erase_if(found.crossings, [&](const Crossing& crossing) { return is_at_tie(model, crossing); });
+  }
   return found;
 }
 

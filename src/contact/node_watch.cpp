@@ -253,6 +253,13 @@ void NodeWatch::decide_sides(std::span<const model::ContactSide> memory) {
   }
 }
 
+/// Whether a tie holds the node at a corner of the element, or that at the node.
+bool NodeWatch::is_joined_with(Index element) const {
+  return !model_.ties.empty() && std::ranges::any_of(model_.triangle[at(element)], [this](Index corner) {
+    return model_.ties.are_joined(node_, corner);
+  });
+}
+
 bool NodeWatch::share_corner(Index a, Index b) const {
   const auto& s = model_.triangle[at(a)];
   const auto& t = model_.triangle[at(b)];
@@ -289,7 +296,7 @@ bool NodeWatch::are_neighbours(const Watched& a, const Watched& b) const {
 
 void NodeWatch::find_depths() {
   for (Watched& w : watched_) {
-    if (w.acts) {
+    if (w.acts && !is_joined_with(w.element)) {
       w.full = full_distance(w);
       w.reach = contact_distance(w, w.full);
       w.depth = w.reach - (w.is_through(w.side) ? -w.distance : w.distance);

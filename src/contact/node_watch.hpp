@@ -100,6 +100,7 @@ class NodeWatch {
   [[nodiscard]] bool hides(const Watched& other, const Watched& watched) const;
   [[nodiscard]] static Vec3d direction(const Watched& watched);
   [[nodiscard]] bool are_neighbours(const Watched& a, const Watched& b) const;
+  [[nodiscard]] bool is_joined_with(Index element) const;
   [[nodiscard]] bool share_corner(Index a, Index b) const;
 
   const model::Model& model_;

@@ -38,6 +38,11 @@ void for_each_section(SomeDeck& deck, Visitor& visitor) {
   visitor.list("pressure", "A pressure on faces.", optional, d.pressure);
   visitor.list("force", "Forces and moments on nodes.", optional, d.forces);
   visitor.list("point_mass", "Masses on nodes, besides those of the shells.", optional, d.point_masses);
+  visitor.list("tie",
+               "Nodes that are joined with the surface of other bodies, with those and nothing else in between: meshes "
+               "that do not match, glued layers, webs on plates. Masses and forces of the nodes go to the corners of "
+               "the triangles.",
+               optional, d.ties);
   visitor.list(
       "plane",
       "A rigid wall that nodes cannot pass: a plane. Walls stand, or move as told whatever touches them; a wall "

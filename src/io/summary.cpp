@@ -70,6 +70,14 @@ ordered_json fault_part(const Summary::FaultPlace& f) {
   return json;
 }
 
+ordered_json ties_part(const std::vector<Summary::Tie>& ties) {
+  ordered_json list = ordered_json::array();
+  for (const Summary::Tie& tie : ties) {
+    list.push_back({{"name", tie.name}, {"tied", tie.tied}, {"far", tie.far}});
+  }
+  return list;
+}
+
 ordered_json added_mass_part(const std::vector<Summary::AddedMass>& parts) {
   ordered_json list = ordered_json::array();
   for (const Summary::AddedMass& part : parts) {
@@ -165,6 +173,7 @@ ordered_json to_json(const Summary& s) {
   json["searches"] = s.searches;
   json["deepest_penetration"] = s.deepest_penetration;
   json["added_mass"] = added_mass_part(s.added_mass);
+  json["ties"] = ties_part(s.ties);
   json["initial_penetrations"] = penetrations_part(s.initial_penetrations);
   json["kernel"] = s.kernel;
   if (s.exit_reason == "fault") {

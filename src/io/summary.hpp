@@ -85,6 +85,12 @@ struct Summary {
     double added{};  ///< [mass]
   };
   std::vector<AddedMass> added_mass;
+  struct Tie {
+    std::string name;
+    std::int64_t tied{};  ///< Nodes
+    std::int64_t far{};   ///< Nodes of its set that are too far from the surface
+  };
+  std::vector<Tie> ties;
 
   /// Two bodies that were nearer before the start than their thicknesses allow, or passed through each other.
   struct Penetration {

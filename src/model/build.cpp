@@ -12,6 +12,7 @@
 #include "model/build_checks.hpp"
 #include "model/build_contact.hpp"
 #include "model/build_rigid.hpp"
+#include "model/build_ties.hpp"
 #include "model/build_walls.hpp"
 #include "model/condition_lookup.hpp"
 #include "model/element_shares.hpp"
@@ -269,6 +270,8 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   build_rigid_bodies(description, model);
   build_contact_pairs(description, model, errors);
   build_conditions(description, meshes, model, errors);
+  build_ties(description, model, errors);
+  find_body_ranges(model);
   return model;
 }
 

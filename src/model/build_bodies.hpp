@@ -31,4 +31,7 @@ void build_point_masses(const Description& description, Model& model);
 /// `meshes` are those given to build_bodies.
 void build_conditions(const Description& description, std::span<const Mesh> meshes, Model& model, ErrorList& errors);
 
+/// Gives each body its ranges of conditions, loads and ties, and says which bodies are barriers.
+void find_body_ranges(Model& model);
+
 }  // namespace fexp::model

@@ -263,6 +263,7 @@ void check_description(const Description& description, ErrorList& errors) {
   check_names("section", description.sections, {}, errors);
   check_names("body", description.bodies, {}, errors);
   check_names("node set", description.node_sets, {"all"}, errors);
+  check_names("tie", description.ties, {}, errors);
   check_walls(description, errors);
   check_contact(description.contact, errors);
 
@@ -324,6 +325,7 @@ void check_description(const Description& description, ErrorList& errors) {
   references(description.pressure);
   references(description.forces);
   references(description.point_masses);
+  references(description.ties);
   references(description.planes);
   references(description.cylinders);
   references(description.spheres);

@@ -216,7 +216,10 @@ void build_conditions(const Description& description, std::span<const Mesh> mesh
   build_pressure(description, meshes, lookup, model, errors);
   check_symmetry(description, model, errors);
   build_rigid_conditions(description, lookup, model, errors);
+  find_body_ranges(model);
+}
 
+void find_body_ranges(Model& model) {
   const auto node_of = [](const auto& item) { return item.node; };
   constexpr unsigned every_dof = 0x3FU;
   for (Body& body : model.bodies) {
@@ -225,6 +228,8 @@ void build_conditions(const Description& description, std::span<const Mesh> mesh
     body.symmetry = range_in(model.symmetry, body.nodes, node_of);
     body.oblique = range_in(model.oblique, body.nodes, node_of);
     body.forces = range_in(model.forces, body.nodes, node_of);
+    body.ties = range_in(model.ties.ties, body.nodes, node_of);
+    body.tied_blocks = range_in(model.ties.blocks, body.blocks, [](const TiedBlock& b) { return b.block; });
     body.pressure = range_in(model.pressure, body.elements, [](const PressureLoad& p) { return p.element; });
     body.barrier = body.fixed.size() == body.nodes.size() &&
                    std::all_of(model.fixed.begin() + body.fixed.begin, model.fixed.begin() + body.fixed.end,

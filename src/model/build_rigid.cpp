@@ -22,17 +22,24 @@ double product(const Vec3d& a, const Symmetric& matrix, const Vec3d& b) {
   return dot(a, Vec3d{xx * b.x + xy * b.y + zx * b.z, xy * b.x + yy * b.y + yz * b.z, zx * b.x + yz * b.y + zz * b.z});
 }
 
+/// Inertia about a point of a unit mass that is `r` away.
+Symmetric point_inertia(const Vec3d& r) {
+  const double square = dot(r, r);
+  return {square - r.x * r.x, square - r.y * r.y, square - r.z * r.z, -r.x * r.y, -r.y * r.z, -r.z * r.x};
+}
+
+void add_part(double scale, const Symmetric& part, Symmetric& sum) {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    sum[i] += scale * part[i];
+  }
+}
+
 /// Inertia that the masses of the nodes alone have about the centre, with that of point masses.
 Symmetric lumped_inertia(const Model& model, const Body& body, const Vec3d& centre) {
   Symmetric sum{};
   for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
     const Vec3d r = model.reference_position[at(n)] - centre;
-    const double mass = model.mass[at(n)], square = dot(r, r);
-    const Symmetric part{square - r.x * r.x, square - r.y * r.y, square - r.z * r.z,
-                         -r.x * r.y,         -r.y * r.z,         -r.z * r.x};
-    for (std::size_t i = 0; i < 6; ++i) {
-      sum[i] += mass * part[i];
-    }
+    add_part(model.mass[at(n)], point_inertia(r), sum);
   }
   for (const AddedNode& point : model.point_masses) {
     for (std::size_t i = 0; i < 3 && body.nodes.contains(point.node); ++i) {
@@ -136,6 +143,47 @@ void build_rigid_bodies(const Description& description, Model& model) {
       model.bodies[at(b)].rigid = static_cast<Index>(model.rigid_bodies.size());
       model.rigid_bodies.push_back(rigid_body(description, model, b));
     }
+  }
+}
+
+void add_tied_masses(Model& model) {
+  for (RigidBody& rigid : model.rigid_bodies) {
+    const auto number = model.bodies[at(rigid.body)].rigid;
+    double mass = rigid.mass;
+    Vec3d moment = rigid.mass * rigid.centre;
+    for (const Tie& tie : model.ties.ties) {
+      if (tie.rigid == number) {
+        mass += model.mass[at(tie.node)];
+        moment += model.mass[at(tie.node)] * model.reference_position[at(tie.node)];
+      }
+    }
+    if (!(mass > rigid.mass)) {
+      continue;
+    }
+    const Vec3d centre = (1.0 / mass) * moment;
+    Symmetric sum{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d& a = rigid.axis[i];
+      add_part(rigid.inertia[i], {a.x * a.x, a.y * a.y, a.z * a.z, a.x * a.y, a.y * a.z, a.z * a.x}, sum);
+    }
+    add_part(rigid.mass, point_inertia(rigid.centre - centre), sum);
+    for (const Tie& tie : model.ties.ties) {
+      if (tie.rigid == number) {
+        const Vec3d arm = model.reference_position[at(tie.node)] - centre;
+        const double inertia = tie.rotations ? model.inertia[at(tie.node)] : 0.0;
+        add_part(model.mass[at(tie.node)], point_inertia(arm), sum);
+        add_part(inertia, {1.0, 1.0, 1.0, 0.0, 0.0, 0.0}, sum);
+        rigid.radius = std::max(rigid.radius, norm(arm));
+      }
+    }
+    const PrincipalAxes axes = principal_axes(sum);
+    rigid.initial_velocity =
+        without(rigid.held, rigid.initial_velocity + cross(rigid.initial_rotation_rate, centre - rigid.centre));
+    rigid.radius += norm(centre - rigid.centre);
+    rigid.mass = mass;
+    rigid.centre = centre;
+    rigid.inertia = axes.value;
+    rigid.axis = axes.axis;
   }
 }
 

@@ -16,4 +16,7 @@ void build_rigid_bodies(const Description& description, Model& model);
 /// conditions of the nodes must be there, sorted.
 void build_rigid_conditions(const Description& description, const Lookup& lookup, Model& model, ErrorList& errors);
 
+/// Gives rigid bodies the masses of the nodes that are tied to them, which move with them.
+void add_tied_masses(Model& model);
+
 }  // namespace fexp::model

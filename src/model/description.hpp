@@ -15,6 +15,7 @@
 #include "model/mesh_generators.hpp"
 #include "model/rigid_walls.hpp"
 #include "model/run_settings.hpp"
+#include "model/tie_description.hpp"
 #include "physics/registry.hpp"
 #include "physics/through_thickness.hpp"
 
@@ -364,6 +365,7 @@ struct Description {
   std::vector<Pressure> pressure;
   std::vector<NodalForce> forces;
   std::vector<PointMass> point_masses;
+  std::vector<TieDescription> ties;
   std::vector<RigidPlane> planes;
   std::vector<RigidCylinder> cylinders;
   std::vector<RigidSphere> spheres;

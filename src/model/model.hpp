@@ -12,6 +12,7 @@
 #include "base/vec3.hpp"
 #include "model/contact_laws.hpp"
 #include "model/description.hpp"
+#include "model/ties.hpp"
 #include "physics/drag.hpp"
 #include "physics/layered_section.hpp"
 
@@ -52,15 +53,17 @@ struct Body {
   IndexRange nodes;
   IndexRange elements;
   IndexRange blocks;
-  IndexRange fixed;       ///< Into Model::fixed.
-  IndexRange prescribed;  ///< Into Model::prescribed.
-  IndexRange symmetry;    ///< Into Model::symmetry.
-  IndexRange oblique;     ///< Into Model::oblique.
-  IndexRange pressure;    ///< Into Model::pressure.
-  IndexRange forces;      ///< Into Model::forces.
-  bool barrier{};         ///< Every node is held in all degrees of freedom: part of every island, joins none.
-  double mass{};          ///< [mass]
-  Index rigid{no_index};  ///< Into Model::rigid_bodies; no_index when the body deforms.
+  IndexRange fixed;        ///< Into Model::fixed.
+  IndexRange prescribed;   ///< Into Model::prescribed.
+  IndexRange symmetry;     ///< Into Model::symmetry.
+  IndexRange oblique;      ///< Into Model::oblique.
+  IndexRange pressure;     ///< Into Model::pressure.
+  IndexRange forces;       ///< Into Model::forces.
+  IndexRange ties;         ///< Into Ties::ties: its nodes that are tied
+  IndexRange tied_blocks;  ///< Into Ties::blocks
+  bool barrier{};          ///< Every node is held in all degrees of freedom: part of every island, joins none.
+  double mass{};           ///< [mass]
+  Index rigid{no_index};   ///< Into Model::rigid_bodies; no_index when the body deforms.
   /// Density of the elements over that of their material; not 1 in a rigid body whose mass is given.
   double density_factor{1.0};
 };
@@ -218,6 +221,7 @@ struct Model {
   std::vector<NodeLoad> forces;
   std::vector<GravityLoad> gravity;
   std::vector<AddedNode> point_masses;
+  Ties ties;
   std::vector<Curve> curves;
   std::vector<std::vector<double>> curve_areas;  ///< Integral of each curve from its first point to each of them [time]
   std::vector<Wall> walls;                       ///< Planes, cylinders and spheres of the deck
@@ -247,6 +251,14 @@ struct Model {
   /// Mass of an element over that of its material.
   [[nodiscard]] double mass_factor(Index element) const noexcept {
     return step_factor.empty() ? 1.0 : step_factor[at(element)] * step_factor[at(element)];
+  }
+  /// What the acceleration of a node moves: its mass [mass] and inertia [mass*length^2] unless ties give it more or
+  /// take them away.
+  [[nodiscard]] double moving_mass(Index node) const noexcept {
+    return ties.empty() ? mass[at(node)] : ties.mass[at(node)];
+  }
+  [[nodiscard]] double moving_inertia(Index node) const noexcept {
+    return ties.empty() ? inertia[at(node)] : ties.inertia[at(node)];
   }
   /// True when bodies a and b (which may be the same) can touch by the deck's contact settings.
   [[nodiscard]] bool can_touch(Index a, Index b) const noexcept;

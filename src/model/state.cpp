@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/hash.hpp"
+#include "model/tie_motion.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::model {
@@ -258,6 +259,9 @@ State initial_state(const Model& model) {
       node.velocity = velocity_at(motion, rate, node.position);
       node.rotation_rate = rate;
     }
+  }
+  for (const Tie& tie : model.ties.ties) {
+    rate_tied_node(tie, state);
   }
   state.sides.resize(model.bodies.size());
   state.edge_sides.resize(model.bodies.size());

@@ -16,6 +16,7 @@ std::vector<Finding> assess(const model::Model& model, std::span<const model::Me
   add(free_edges(model));
   add(near_nodes(model));
   add(overlapping_shells(model));
+  add(far_tied_nodes(model));
   add(slivers(model));
   add(added_mass(model));
   std::stable_partition(all.begin(), all.end(), [](const Finding& f) { return f.severity == Severity::warning; });

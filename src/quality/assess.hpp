@@ -36,6 +36,9 @@ namespace fexp::quality {
 /// Mass that mass scaling gave the parts of bodies ("added_mass"): a warning where it is more than 5 % of the part's.
 [[nodiscard]] std::vector<Finding> added_mass(const model::Model& model);
 
+/// Nodes that a tie was to hold and that are too far from its surface ("far_tied_nodes").
+[[nodiscard]] std::vector<Finding> far_tied_nodes(const model::Model& model);
+
 /// A few elements whose critical step is so far below that of the others that it costs half again as many steps
 /// ("slivers").
 [[nodiscard]] std::vector<Finding> slivers(const model::Model& model);

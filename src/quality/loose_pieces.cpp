@@ -66,6 +66,10 @@ std::vector<char> acted_upon(const model::Model& model, const Pieces& pieces) {
   mark_nodes_of(model.symmetry);
   mark_nodes_of(model.oblique);
   mark_nodes_of(model.forces);
+  for (const model::Tie& tie : model.ties.ties) {
+    mark(tie.node);
+    mark(tie.carrier[0]);
+  }
   for (const model::PressureLoad& pressure : model.pressure) {
     mark(model.triangle[at(pressure.element)][0]);
   }

@@ -38,7 +38,8 @@ std::vector<Finding> near_nodes(const model::Model& model) {
     const double d = norm(model.reference_position[at(n)] - model.reference_position[at(other)]);
     const bool near = d <= near_part * std::min(model.node_size[at(n)], model.node_size[at(other)]);
     const bool fixed = model.bodies[at(body)].barrier && model.bodies[at(other_body)].barrier;
-    return near && !fixed && is_told(model, body, other_body) && !share_element(model, n, other) ? d : HUGE_VAL;
+    const bool joined = model.ties.are_joined(n, other) || share_element(model, n, other);
+    return near && !fixed && is_told(model, body, other_body) && !joined ? d : HUGE_VAL;
   };
   const std::vector<Partner> partners = nearest_partners(tree, model.node_count(), box, distance);
 

@@ -40,6 +40,15 @@ struct Plates {
   std::vector<double> reach;
 };
 
+/// Whether a tie joins a corner of one element with one of the other.
+bool are_tied(const model::Model& model, Index e, Index other) {
+  const auto& s = model.triangle[at(e)];
+  const auto& t = model.triangle[at(other)];
+  return !model.ties.empty() && std::any_of(s.begin(), s.end(), [&](Index a) {
+    return std::any_of(t.begin(), t.end(), [&](Index b) { return model.ties.are_joined(a, b); });
+  });
+}
+
 }  // namespace
 
 std::vector<Finding> overlapping_shells(const model::Model& model) {
@@ -60,7 +69,7 @@ std::vector<Finding> overlapping_shells(const model::Model& model) {
     const double limit = touching_part * contact_distance(e, other);
     if (std::abs(dot(way, plates.normal[at(other)])) >= limit ||
         std::abs(dot(plates.normal[at(e)], plates.normal[at(other)])) < least_cosine ||
-        !is_told(model, body_of(e), body_of(other)) || share_node(model, e, other)) {
+        !is_told(model, body_of(e), body_of(other)) || share_node(model, e, other) || are_tied(model, e, other)) {
       return HUGE_VAL;
     }
     const auto& t = model.triangle[at(other)];

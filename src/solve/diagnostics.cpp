@@ -19,7 +19,7 @@ Diagnostics node_sums(const model::Model& model, const model::State& state, Inde
   Diagnostics sum;
   for (Index n = begin; n < end; ++n) {
     const model::NodeMotion& motion = state.motion[at(n)];
-    const double mass = model.mass[at(n)], inertia = model.inertia[at(n)];
+    const double mass = model.moving_mass(n), inertia = model.moving_inertia(n);
     sum.energies.kinetic += 0.5 * (mass * dot(motion.velocity, motion.velocity) +
                                    inertia * dot(motion.rotation_rate, motion.rotation_rate));
     const Vec3d linear = mass * motion.velocity;
@@ -167,9 +167,17 @@ CriticalStep body_critical_step(const model::Model& model, const model::State& s
       state.motion.data(),   model.triangle.data(), model.blocks.data(),
       model.sections.data(), model.run.drilling,    model.step_factor.empty() ? nullptr : model.step_factor.data(),
       state.layers.data()};
-  return parallel::ordered_fold(
+  CriticalStep smallest = parallel::ordered_fold(
       model.bodies[at(body)].blocks, piece / model::block_lanes, CriticalStep{},
       [&](Index begin, Index end) { return kernel(arguments, begin, end); }, smaller);
+  const IndexRange tied = model.bodies[at(body)].tied_blocks;
+  for (Index t = tied.begin; t < tied.end; ++t) {
+    const model::TiedBlock& block = model.ties.blocks[at(t)];
+    CriticalStep critical = kernel(arguments, block.block, block.block + 1);
+    critical.step /= square_root(block.ratio);
+    smallest = smaller(smallest, critical);
+  }
+  return smallest;
 }
 
 }  // namespace fexp::solve

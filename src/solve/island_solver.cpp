@@ -59,6 +59,7 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
       inertia_ratio_ = maximum(inertia_ratio_, model.rigid_bodies[at(body.rigid)].inertia_ratio);
     }
   }
+  assign_ties(model);
   partials_.resize(pieces_.size());
   wall_partials_.resize(pieces_.size() * model.walls.size());
   wall_points_.resize(model.walls.size());
@@ -81,9 +82,11 @@ void IslandSolver::evaluate(const model::Model& model, model::State& state, Work
     load_nodes(still);
   }
   advance_pieces(still, Pass::accelerate);
+  carry_ties(still);
   act_on_bodies(still);
   accelerate_rigid(still);
   rate_rigid_nodes(still);
+  rate_ties(still);
 }
 
 IslandReport IslandSolver::advance(const model::Model& model, model::State& state, Workspace& workspace,
@@ -116,6 +119,7 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
       }
       // Held nodes are seen to before velocities change.
       advance_pieces(step, held_ ? Pass::accelerate : Pass::accelerate_and_close);
+      carry_ties(step);
       act_on_bodies(step);
       accelerate_rigid(step);
       if (held_) {
@@ -127,6 +131,7 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
       accelerate_rigid(step);
     }
     finish_rigid(step, opened);
+    rate_ties(step);
     if (!check_closed(step, total)) {
       return total;
     }
@@ -168,7 +173,7 @@ void IslandSolver::kick(const Step& step, const Piece& piece, Partial& partial) 
     Vec3d v = motion.velocity + half * acceleration.linear;
     Vec3d w = motion.rotation_rate + half * acceleration.angular;
     if (damping > 0.0) {
-      const double mass = step.model.mass[at(n)], inertia = step.model.inertia[at(n)];
+      const double mass = step.model.moving_mass(n), inertia = step.model.moving_inertia(n);
       const Vec3d lost = (mass * (kept - 1.0)) * v;
       partial.impulse += lost;
       partial.angular_impulse += cross(motion.position, lost) + (inertia * (kept - 1.0)) * w;
@@ -198,8 +203,8 @@ void IslandSolver::opening_half(const Step& step) {
   }
   const auto count = static_cast<Index>(pieces_.size());
   const Index pieces_per_task = grain(pieces_.size(), nodes_, task_nodes);
-  // One pass over the nodes unless prescribed velocities come in between.
-  const bool in_one = !prescribed_;
+  // One pass over the nodes unless prescribed or tied velocities come in between.
+  const bool in_one = !prescribed_ && ties_.empty();
   open_rigid(step);
   parallel::for_each(count, pieces_per_task, [&](Index i) {
     if (is_rigid(step, at(i))) {
@@ -215,11 +220,13 @@ void IslandSolver::opening_half(const Step& step) {
     return;
   }
   prescribe(step, HalfStep::opening);
+  steer_ties(step);
   parallel::for_each(count, pieces_per_task, [&](Index i) {
     if (!is_rigid(step, at(i))) {
       move(step, pieces_[at(i)], partials_[at(i)]);
     }
   });
+  place_ties(step);
 }
 
 /// The motion of a step, and the work that loads do in its first half.

@@ -112,6 +112,12 @@ class IslandSolver {
     IndexRange pieces;    ///< Its own
     Vec3d rotation_rate;  ///< Inside the step [1/time]
   };
+  /// A tied node of the island.
+  struct IslandTie {
+    Index tie{};                  ///< Into Ties::ties
+    Index rigid_piece{no_index};  ///< First piece of its carrier, where that is rigid
+    Vec3d place;                  ///< Where it belongs at the end of the step, from its carriers where those deform
+  };
   /// What follows the element forces. Where something acts from outside: accelerations, with the closing half step
   /// unless nodes are held that have to be seen to before. Elsewhere: both, and where the next step follows at once its
   /// opening half and motion, too.
@@ -151,6 +157,11 @@ class IslandSolver {
   void close_rigid(const Step& step);
   void rate_rigid_nodes(const Step& step);
   void finish_rigid(const Step& step, bool go_on);
+  void assign_ties(const model::Model& model);
+  void carry_ties(const Step& step);
+  void steer_ties(const Step& step);
+  void place_ties(const Step& step);
+  void rate_ties(const Step& step) const;
   [[nodiscard]] NodeKernelArguments node_arguments(const Step& step, Pass pass) const;
   [[nodiscard]] bool check_opened(const Step& step, IslandReport& report) const;
   [[nodiscard]] bool check_closed(const Step& step, IslandReport& report) const;
@@ -166,6 +177,7 @@ class IslandSolver {
   std::vector<Index> border_pieces_;  // The others
   std::vector<Index> rigid_pieces_;   // Those of rigid bodies, in none of the two lists above
   std::vector<RigidPart> rigid_;      // Rigid bodies
+  std::vector<IslandTie> ties_;       // Of its bodies' nodes, ascending
   std::vector<Partial> partials_;     // [pieces]
   std::vector<Vec3d> wall_partials_;  // [pieces][walls]
   std::vector<Vec3d> wall_points_;    // [walls]: at the end of the step
@@ -176,9 +188,9 @@ class IslandSolver {
   Index elements_{};
   Index nodes_{};
   Index rigid_nodes_{};
-  double inertia_ratio_{1.0};  // Largest of the rigid bodies
+  double inertia_ratio_{1.0};  // Largest of the rigid bodies and at ties
   bool contact_written_{};
-  bool held_{};  // Nodes of the island are held or prescribed
+  bool held_{};  // Nodes of the island are held, prescribed or tied
   bool prescribed_{};
 };
 

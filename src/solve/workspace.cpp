@@ -13,7 +13,12 @@ Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
   border_force.resize(at(patches.border_start.back()));
   inverse_inertia.reserve(model.mass.size());
   for (std::size_t n = 0; n < model.mass.size(); ++n) {
-    inverse_inertia.push_back({1.0 / model.mass[n], 1.0 / model.inertia[n]});
+    const auto node = static_cast<Index>(n);
+    inverse_inertia.push_back({1.0 / model.moving_mass(node), 1.0 / model.moving_inertia(node)});
+  }
+  for (const model::Tie& tie : model.ties.ties) {
+    InverseInertia& inverse = inverse_inertia[at(tie.node)];
+    inverse = {1.0, tie.rotations ? 1.0 : inverse.inertia};
   }
   contact.force.resize(model.reference_position.size());
   contact.stiffness.resize(model.reference_position.size());
@@ -30,7 +35,8 @@ Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
         return !body.turns_freely || !body.held.empty() || !body.prescribed.empty();
       });
   external = holds_rigid || !load.empty() || model.run.damping > 0.0 || model.run.is_static() || !model.walls.empty() ||
-             !model.fixed.empty() || !model.prescribed.empty() || !model.symmetry.empty() || !model.oblique.empty();
+             !model.fixed.empty() || !model.prescribed.empty() || !model.symmetry.empty() || !model.oblique.empty() ||
+             !model.ties.empty();
 }
 
 }  // namespace fexp::solve

@@ -32,14 +32,15 @@ struct Workspace {
   SelectedKernel kernel;
   std::vector<physics::ShellStiffness> sections;  // [sections]
   Patches patches;
-  AlignedVector<NodeForce> border_force;          // [shares of border nodes]
-  AlignedVector<InverseInertia> inverse_inertia;  // [nodes]
-  contact::NodeContact contact;                   // At the last evaluated positions
+  AlignedVector<NodeForce> border_force;  // [shares of border nodes]
+  /// Shape [nodes]; 1 for what ties carry of a node, so that its acceleration is the force, until that is handed on.
+  AlignedVector<InverseInertia> inverse_inertia;
+  contact::NodeContact contact;  // At the last evaluated positions
   /// Loads and gravity at the last evaluated instant, shape [nodes]; empty when the model has none.
   std::vector<NodalAction> load;
   std::vector<BodyActions> actions;                // [bodies]
   std::vector<contact::BodyContact> body_contact;  // [bodies]
-  bool external{};  ///< Anything at all acts on the model from outside (loads, walls, damping, conditions).
+  bool external{};  ///< Anything at all acts on the model from outside (loads, walls, damping, conditions), or ties.
 };
 
 }  // namespace fexp::solve

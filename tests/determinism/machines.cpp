@@ -34,6 +34,7 @@ const std::vector<Scene>& scenes() {
                                       {"shot", test::shot, 0.06},
                                       {"damped_shot", test::damped_shot, 0.06},
                                       {"rigid_and_soft", test::rigid_and_soft, 0.12},
+                                      {"tied_panel", test::tied_panel, 0.1},
                                       {"rigid_machine", test::rigid_machine, 0.1},
                                       {"swarm", test::swarm, 0.1}};
   return all;

@@ -54,6 +54,10 @@ const std::vector<Scene>& scenes() {
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.deleted > 9 && o.damping > 0.0; }},
       {"rigid_and_soft", test::rigid_and_soft, 0.12,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.extremes.energy_error < 0.01; }},
+      {"tied_panel", test::tied_panel, 0.1,
+       [](const test::Outcome& o) {
+         return o.extremes.most_active_pairs > 5 && o.extremes.energy_error < 0.01 && o.extremes.most_islands <= 2;
+       }},
       {"rigid_machine", test::rigid_machine, 0.1,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 20; }},
       {"swarm", test::swarm, 0.1,

@@ -283,6 +283,40 @@ inline model::Description rigid_machine() {
 }
 
 /// What must be the same however a scene is computed, and what proves that the scene is worth computing.
+/// A panel with a web welded to it, a flap that hangs on it by a hinge and on a rigid block at the other end; the panel
+/// is driven along one edge and hit by a ball.
+inline model::Description tied_panel() {
+  model::Description d = with_contact(0.02);
+  const auto seam = [&](const std::string& name, const std::string& body, const Vec3d& low, const Vec3d& high,
+                        const std::string& surface) -> model::TieDescription& {
+    add_box_set(d, name, low, high);
+    d.node_sets.back().bodies = {body};
+    model::TieDescription& tie = d.ties.emplace_back();
+    tie.name = tie.set = name;
+    tie.surface = {surface};
+    return tie;
+  };
+  add_body(d, "panel", plate(1.2, 16));
+  model::BodyDescription& web = add_body(d, "web", plate(0.8, 12));
+  web.rotate.push_back({{1.0, 0.0, 0.0}, 90.0, {}});
+  web.translate = {0.2, 0.63, 0.01};
+  add_body(d, "flap", plate(0.6, 5)).translate = {1.2, 0.3, 0.0};
+  model::BodyDescription& block = add_body(d, "block", plate(0.4, 4));
+  block.translate = {1.8, 0.4, 0.0};
+  block.rigid = true;
+  model::BodyDescription& ball = add_body(d, "ball", sphere(0.3, 6));
+  ball.translate = {0.5, 0.4, -0.33};
+  ball.velocity = {0.5, 0.0, 5.0};
+  seam("weld", "web", {-1.0, -1.0, 0.0}, {3.0, 3.0, 0.02}, "panel");
+  seam("hinge", "flap", {1.19, -1.0, -1.0}, {1.21, 3.0, 1.0}, "panel").rotations = false;
+  seam("end", "flap", {1.79, -1.0, -1.0}, {1.81, 3.0, 1.0}, "block");
+  d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
+  d.curves.push_back({"shake", {{0.0, 0.0}, {0.02, 1.0}, {0.05, -1.0}, {0.1, 0.0}}, {}});
+  add_box_set(d, "rim", {-0.01, -0.01, -0.01}, {0.01, 1.21, 0.01});
+  d.prescribed.push_back({"rim", "z", 1.0, "shake", {}});
+  return d;
+}
+
 struct Outcome {
   std::uint64_t state_hash{};
   std::vector<solve::HashRecord> hashes;

@@ -137,7 +137,7 @@ Histories::Histories(const io::RunDirectory& directory, const Case& loaded, cons
     }
   }
   if (!model_.walls.empty()) {
-    walls_ = open(directory.history("planes"), walls_columns(units, model_), mark);
+    walls_ = open(directory.history("walls"), walls_columns(units, model_), mark);
   }
   if (!sets_.empty()) {
     nodes_ = open(directory.history("nodes"), nodes_columns(units), mark);

@@ -102,6 +102,7 @@ std::string bodies_text(const CheckReport& report) {
     const model::Body& body = model.bodies[b];
     text += fmt::format("  body \"{}\": {} elements, {} nodes{}\n", body.name, body.elements.size(), body.nodes.size(),
                         body.barrier             ? ", fixed"
+                        : body.wall != no_index  ? ", a rigid wall with mass"
                         : body.rigid != no_index ? ", rigid"
                                                  : "");
     text += properties_text(report.bodies[b], report.loaded.deck.units);

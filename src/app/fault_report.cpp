@@ -93,10 +93,10 @@ io::Summary::FaultPlace place_of(const model::Model& model, const cluster::Fault
 
 bool write_neighbourhood(const std::filesystem::path& path, const cluster::Simulation& simulation,
                          const cluster::Fault& fault) {
-  if (fault.body == no_index) {
+  const model::Model& model = simulation.model();
+  if (fault.body == no_index || model.bodies[at(fault.body)].elements.size() == 0) {
     return false;
   }
-  const model::Model& model = simulation.model();
   const model::State &start = simulation.epoch_start(), &now = simulation.state();
   const Index element = fault.element != no_index ? fault.element : model.bodies[at(fault.body)].elements.begin;
   const model::Cutout cutout = model::neighbourhood(model, start, element, most_elements);

@@ -56,6 +56,10 @@ std::vector<Column> walls_columns(const io::UnitNames& units, const model::Model
   std::vector<Column> columns = first_columns(units);
   for (const model::Wall& wall : model.walls) {
     io::add_vector_columns(columns, wall.name, units.of("force"));
+    if (wall.body != no_index) {
+      io::add_vector_columns(columns, wall.name + "_displacement", units.of("length"));
+      io::add_vector_columns(columns, wall.name + "_velocity", units.of("length/time"));
+    }
   }
   return columns;
 }
@@ -140,7 +144,7 @@ Histories::Histories(const io::RunDirectory& directory, const Case& loaded, cons
     }
   }
   if (!model_.walls.empty()) {
-    walls_ = open(directory.history("planes"), walls_columns(units, model_), mark);
+    walls_ = open(directory.history("walls"), walls_columns(units, model_), mark);
   }
   if (!sets_.empty()) {
     nodes_ = open(directory.history("nodes"), nodes_columns(units), mark);
@@ -171,7 +175,7 @@ std::vector<Index> Histories::bodies_needed(const Case& loaded) {
     }
   }
   for (Index b = 0; b < model.body_count(); ++b) {
-    if (is_named(model.bodies[at(b)], output.bodies)) {
+    if (model.bodies[at(b)].wall != no_index || is_named(model.bodies[at(b)], output.bodies)) {
       bodies.insert(b);
     }
   }
@@ -227,11 +231,18 @@ void Histories::write_walls(const cluster::Simulation& simulation) {
   }
   std::vector<Cell> cells = first_cells(simulation.state());
   for (std::size_t w = 0; w < model_.walls.size(); ++w) {
+    const model::Wall& wall = model_.walls[w];
     Vec3d force;
-    for (const solve::BodyActions& actions : simulation.workspace().actions) {
-      force += actions.wall_force[w];
+    for (Index b = 0; b < model_.meshed_body_count(); ++b) {
+      force += simulation.workspace().actions[at(b)].wall_force[w];
     }
     io::add_vector_cells(cells, force);
+    if (wall.body != no_index) {
+      const Index node = model_.bodies[at(wall.body)].nodes.begin;
+      const model::NodeMotion& motion = simulation.state().motion[at(node)];
+      io::add_vector_cells(cells, motion.position - model_.reference_position[at(node)]);
+      io::add_vector_cells(cells, motion.velocity);
+    }
   }
   walls_->row(cells);
 }

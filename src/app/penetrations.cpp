@@ -9,6 +9,7 @@
 #include "contact/separation.hpp"
 #include "contact/surface.hpp"
 #include "model/build.hpp"
+#include "solve/wall_penetrations.hpp"
 
 namespace fexp::app {
 
@@ -58,12 +59,34 @@ std::vector<Penetration> named(const model::Model& model, const contact::Initial
   return list;
 }
 
+Penetration named(const model::Model& model, const solve::WallPenetration& inside) {
+  Penetration p;
+  p.body = model.bodies[at(inside.body)].name;
+  p.wall = model.walls[at(inside.wall)].name;
+  p.count = inside.count;
+  p.depth = inside.depth;
+  p.contact_distance = inside.contact_distance;
+  p.nodes = {model.node_label[at(inside.node)]};
+  return p;
+}
+
+/// Bodies are not moved out of walls, so that these are left as they are found.
+void add_walls(const model::Model& model, std::vector<Penetration>& list) {
+  for (const solve::WallPenetration& inside : solve::find_wall_penetrations(model)) {
+    list.push_back(named(model, inside));
+  }
+}
+
 std::string other_text(const Penetration& p) {
   return p.other_body == p.body ? "itself" : fmt::format("body \"{}\"", p.other_body);
 }
 
 /// Without the body's name.
 std::string nearness_text(const Penetration& p) {
+  if (!p.wall.empty()) {
+    return fmt::format("inside rigid wall \"{}\" with {} nodes, at most by {:.4g} of {:.4g} half thickness: node {}",
+                       p.wall, p.count, p.depth, p.contact_distance, p.nodes[0]);
+  }
   const std::string where = p.nodes.size() == 1 ? fmt::format("node {} and element {}", p.nodes[0], p.elements[0])
                                                 : fmt::format("the edges from node {} to {} and from node {} to {}",
                                                               p.nodes[0], p.nodes[1], p.nodes[2], p.nodes[3]);
@@ -75,6 +98,15 @@ std::string nearness_text(const Penetration& p) {
 std::string crossing_text(const Penetration& p) {
   return fmt::format("passes through {} at {} edges, the first from node {} to {} of body \"{}\", through element {}",
                      other_text(p), p.crossings, p.crossing[0], p.crossing[1], p.crossing_body, p.crossing[2]);
+}
+
+std::string nearness_cure(const Penetration& p, bool removed) {
+  if (!p.wall.empty()) {
+    return "the wall pushes them out from the first step on; move the body or the wall";
+  }
+  return removed ? "they keep their distance without a force; move the bodies, or mend the mesh"
+                 : "they keep their distance without a force; move them apart, or let "
+                   "contact.initial_penetrations = \"remove\" do it";
 }
 
 constexpr std::string_view crossing_cure =
@@ -99,6 +131,7 @@ void treat_penetrations(const std::vector<model::Mesh>& meshes, Case& loaded, Er
   contact::InitialPenetrations found =
       contact::find_initial_penetrations(loaded.model, loaded.model.reference_position);
   report.found = named(loaded.model, found);
+  add_walls(loaded.model, report.found);
   if (settings.initial_penetrations != "remove" || (found.pairs.empty() && found.crossings.empty())) {
     return;
   }
@@ -120,6 +153,7 @@ void treat_penetrations(const std::vector<model::Mesh>& meshes, Case& loaded, Er
   report.farthest_node = apart.farthest_node == no_index ? -1 : loaded.model.node_label[at(apart.farthest_node)];
   report.left = named(loaded.model, apart.left);
   loaded.model = model::build_model(loaded.deck.description, meshes, errors, apart.position);
+  add_walls(loaded.model, report.left);
 }
 
 std::vector<std::string> penetration_lines(const io::Summary::InitialPenetrations& p) {
@@ -156,10 +190,7 @@ std::vector<quality::Finding> penetration_findings(const io::Summary::InitialPen
     if (p.count > 0) {
       finding.kind = "initial_penetration";
       finding.message = nearness_text(p);
-      finding.cure = penetrations.removed
-                         ? "they keep their distance without a force; move the bodies, or mend the mesh"
-                         : "they keep their distance without a force; move them apart, or let "
-                           "contact.initial_penetrations = \"remove\" do it";
+      finding.cure = nearness_cure(p, penetrations.removed);
       finding.count = p.count;
       finding.numbers = {{"depth", p.depth}, {"contact_distance", p.contact_distance}};
       findings.push_back(finding);

@@ -7,7 +7,7 @@
 #include "app/load.hpp"
 #include "quality/finding.hpp"
 
-/// Shells that are nearer before the start than their thicknesses allow.
+/// Shells that are nearer before the start, to each other or to rigid walls, than their thicknesses allow.
 namespace fexp::app {
 
 /// Notes them in the case, and, where the deck asks for it, moves nodes apart and builds the model anew. Surfaces that

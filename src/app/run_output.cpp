@@ -200,7 +200,7 @@ std::vector<std::pair<std::string, std::string>> files_of(const io::RunDirectory
       {"versions", directory.versions().string()}, {"log", directory.log().string()},
       {"summary", directory.summary().string()},   {"hashes", directory.hashes().string()},
       {"fault", directory.fault().string()}};
-  for (const char* name : {"energies", "momenta", "steps", "planes", "nodes", "bodies"}) {
+  for (const char* name : {"energies", "momenta", "steps", "walls", "nodes", "bodies"}) {
     files.emplace_back(name, directory.history(name).string());
   }
   // The summary is about to be written.

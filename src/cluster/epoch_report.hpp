@@ -45,8 +45,9 @@ struct EpochReport {
   Index deepest_node{no_index};
   Index deepest_element{no_index};
   double contact_frequency2{};    ///< Bound of contact's and walls' share of omega^2 [1/time^2]
-  Index stiffest_node{no_index};  ///< Of the pair that has it, no_index for a wall
+  Index stiffest_node{no_index};  ///< Of the pair that has it
   Index stiffest_element{no_index};
+  Index stiffest_wall{no_index};   ///< Instead of an element
   solve::CriticalStep critical;    ///< Of the elements, at the end
   solve::Diagnostics diagnostics;  ///< At the end
   double energy_error{};           ///< Relative imbalance at the end [-]

@@ -38,6 +38,27 @@ std::string pair_text(const model::Model& model, Index body, Index other) {
                        : fmt::format("{} with {}", name_of(model, body), name_of(model, other));
 }
 
+std::string wall_text(const model::Model& model, Index wall) {
+  return fmt::format("rigid wall \"{}\"", model.walls[at(wall)].name);
+}
+
+/// The rigid walls that push a body, or a text without any.
+std::string walls_text(const model::Model& model, const solve::BodyActions& actions) {
+  std::string text;
+  for (std::size_t w = 0; w < actions.wall_force.size(); ++w) {
+    if (actions.wall_force[w] != Vec3d{}) {
+      text += (text.empty() ? "" : ", ") + wall_text(model, static_cast<Index>(w));
+    }
+  }
+  return text;
+}
+
+/// An element at the node; no_index for that of a rigid wall with mass.
+Index element_at(const model::Model& model, Index node) {
+  const Index first = model.corner_start[at(node)];
+  return first < model.corner_start[at(node) + 1] ? model.corner[at(first)] / 3 : no_index;
+}
+
 /// Calls visit(node, element) for what `body` remembers of contact.
 template <class Visit>
 void for_each_side(const model::Model& model, const model::State& state, Index body, const Visit& visit) {
@@ -133,7 +154,14 @@ void Simulation::describe(EpochReport& report) {
 
 void Simulation::describe_break(Fault& fault) const {
   fault.body = model_.node_body[at(fault.node)];
-  fault.element = model_.corner[at(model_.corner_start[at(fault.node)])] / 3;
+  fault.element = element_at(model_, fault.node);
+  if (fault.element == no_index) {
+    fault.message = fmt::format("step {}: the velocity of {} is not a finite number", fault.step,
+                                wall_text(model_, model_.bodies[at(fault.body)].wall));
+    fault.cure = "check its mass, force and initial_velocity and what it touches, or lower run.safety";
+    return;
+  }
+  const std::string walls = walls_text(model_, workspace_.actions[at(fault.body)]);
   std::string contact;
   double hardest = 0.0;
   const auto visit = [&](Index node, Index element) {
@@ -151,9 +179,10 @@ void Simulation::describe_break(Fault& fault) const {
   for (Index body = 0; body < model_.body_count(); ++body) {
     for_each_side(model_, state_, body, visit);
   }
-  fault.message = fmt::format("step {}: the velocity of node {} of body \"{}\" (element {}) is not a finite number{}",
-                              fault.step, model_.node_label[at(fault.node)], model_.bodies[at(fault.body)].name,
-                              model_.element_label[at(fault.element)], contact);
+  fault.message =
+      fmt::format("step {}: the velocity of node {} of body \"{}\" (element {}) is not a finite number{}{}", fault.step,
+                  model_.node_label[at(fault.node)], model_.bodies[at(fault.body)].name,
+                  model_.element_label[at(fault.element)], contact, walls.empty() ? "" : "; the body is on " + walls);
   fault.cure = contact.empty() ? "check density, thickness, loads and initial velocities there, or lower run.safety"
                                : "lower contact.stiffness or contact.penalty_scale, check density and thickness "
                                  "there and whether the bodies overlap at the start, or lower run.safety";
@@ -169,11 +198,16 @@ void Simulation::describe_collapse(const EpochReport& report, Fault& fault) cons
                                : fmt::format("no step is stable to the end of an epoch, not even {:.3g}", report.dt);
   fault.element = critical_.element;
   fault.body = contact::body_of_element(model_, fault.element);
-  if (contact2 > element2 && report.stiffest_node == no_index) {
-    fault.element = no_index;
-    fault.body = no_index;
-    fault.message = fell + ", through the stiffness of a rigid wall";
-    fault.cure = "lower the stiffness of the wall, or give the light nodes that touch it mass by run.minimum_step";
+  if (contact2 > element2 && report.stiffest_wall != no_index) {
+    const bool has_mass = model_.walls[at(report.stiffest_wall)].body != no_index;
+    fault.node = report.stiffest_node;
+    fault.element = element_at(model_, fault.node);
+    fault.body = model_.node_body[at(fault.node)];
+    fault.message = fmt::format("{}, through the stiffness of {} on {}", fell, wall_text(model_, report.stiffest_wall),
+                                node_text(model_, fault.node));
+    fault.cure =
+        fmt::format("lower the stiffness of the wall, or give {} mass{}",
+                    has_mass ? "it more" : "the light nodes that touch it", has_mass ? "" : " by run.minimum_step");
   } else if (contact2 > element2) {
     fault.node = report.stiffest_node;
     fault.element = report.stiffest_element;
@@ -200,9 +234,16 @@ void Simulation::describe_drift(const EpochReport& report, Fault& fault) const {
   fault.other = culprit.other;
   fault.share = culprit.share;
   std::string where;
-  if (culprit.other == no_index) {
+  const std::string walls = walls_text(model_, workspace_.actions[at(culprit.body)]);
+  if (const Index wall = model_.bodies[at(culprit.body)].wall; wall != no_index) {
+    where = "at " + wall_text(model_, wall);
+    fault.cure =
+        "lower run.safety or the stiffness of the wall, or raise run.energy_drift_limit if the imbalance is "
+        "expected";
+  } else if (culprit.other == no_index) {
     fault.element = most_strained(model_, state_, culprit.body);
-    where = fmt::format("inside one body, most strained: {}", element_text(model_, fault.element));
+    where = fmt::format("inside one body{}, most strained: {}", walls.empty() ? "" : " or where it is on " + walls,
+                        element_text(model_, fault.element));
     fault.cure =
         "lower run.safety, refine the mesh there, or raise run.energy_drift_limit if the imbalance is expected";
   } else {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cluster/overlapping_boxes.hpp"
+#include "cluster/wall_reach.hpp"
 
 namespace fexp::cluster {
 
@@ -41,8 +42,9 @@ Adjacency adjacency(std::size_t bodies, const std::vector<Edge>& edges) {
 
 std::vector<Island> find_islands(const model::Model& model, std::span<const Box> swept) {
   std::vector<Edge> joining, touching_barrier;
+  const std::span<const Box> meshed = swept.first(at(model.meshed_body_count()));
   const bool nothing_touches = !model.contact.enabled;
-  for (const Edge& pair : overlapping_pairs(nothing_touches ? std::span<const Box>{} : swept)) {
+  for (const Edge& pair : overlapping_pairs(nothing_touches ? std::span<const Box>{} : meshed)) {
     if (!model.can_touch(pair.first, pair.second)) {
       continue;
     }
@@ -55,6 +57,14 @@ std::vector<Island> find_islands(const model::Model& model, std::span<const Box>
   }
   for (const model::TiedBodies& tied : model.ties.bodies) {
     joining.emplace_back(tied.body, tied.carrier);
+  }
+  for (Index wall = model.meshed_body_count(); wall < model.body_count(); ++wall) {
+    for (Index body = 0; body < model.meshed_body_count(); ++body) {
+      if (!model.bodies[at(body)].barrier &&
+          may_reach(model.walls[at(model.bodies[at(wall)].wall)], swept[at(wall)], swept[at(body)])) {
+        joining.emplace_back(body, wall);
+      }
+    }
   }
   const Adjacency graph = adjacency(swept.size(), joining);
 

@@ -16,6 +16,7 @@ void RankRecord::add(const solve::IslandReport& island) {
   one.contact_frequency2 = island.contact_frequency2;
   one.stiffest_node = island.stiffest_node;
   one.stiffest_element = island.stiffest_element;
+  one.stiffest_wall = island.stiffest_wall;
   one.active_pairs = island.active_pairs;
   one.candidates = island.candidates;
   one.searches = island.searches;
@@ -39,6 +40,7 @@ void RankRecord::add(const RankRecord& other) {
     contact_frequency2 = other.contact_frequency2;
     stiffest_node = other.stiffest_node;
     stiffest_element = other.stiffest_element;
+    stiffest_wall = other.stiffest_wall;
   }
   active_pairs += other.active_pairs;
   candidates += other.candidates;

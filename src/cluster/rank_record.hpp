@@ -19,6 +19,7 @@ struct RankRecord {
   double contact_frequency2{};
   Index stiffest_node{no_index};  ///< See IslandReport
   Index stiffest_element{no_index};
+  Index stiffest_wall{no_index};
   Index active_pairs{};
   Index candidates{};
   Index searches{};

@@ -110,7 +110,7 @@ EpochReport Simulation::present() const {
 std::vector<double> Simulation::elements_of(const model::Model& model) {
   std::vector<double> elements;
   for (const model::Body& body : model.bodies) {
-    elements.push_back(static_cast<double>(body.elements.size()));
+    elements.push_back(std::max(1.0, static_cast<double>(body.elements.size())));
   }
   return elements;
 }
@@ -352,6 +352,7 @@ void Simulation::gather(const RankRecord& record, EpochReport& report) const {
   report.contact_frequency2 = record.contact_frequency2;
   report.stiffest_node = record.stiffest_node;
   report.stiffest_element = record.stiffest_element;
+  report.stiffest_wall = record.stiffest_wall;
   for (const Island& island : islands_) {
     Index elements = 0;
     for (const Index body : island.bodies) {

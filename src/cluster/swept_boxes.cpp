@@ -107,7 +107,8 @@ BodyExtent extent_of(const model::Model& model, const model::State& state, Index
     return a;
   };
   BodyExtent extent = parallel::ordered_fold(model.bodies[at(body)].nodes, node_piece, BodyExtent{}, part_of, larger);
-  extent.size = largest_edge(extent.box);
+  const Index wall = model.bodies[at(body)].wall;
+  extent.size = wall == no_index ? largest_edge(extent.box) : model.walls[at(wall)].span;
   extent.speed = std::sqrt(extent.speed);
   extent.acceleration = std::sqrt(extent.acceleration);
   for (const model::ContactSide& side : state.sides[at(body)]) {

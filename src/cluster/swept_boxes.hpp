@@ -15,7 +15,7 @@ struct BodyExtent {
   /// The nodes, and what the body's remembered sides name, so that these are in one island however deep a node has come
   /// through [length].
   Box box;
-  double size{};          ///< Largest edge of the nodes' box [length]
+  double size{};          ///< Largest edge of the nodes' box; of a rigid wall with mass, of that of all bodies [length]
   double reach{};         ///< Largest half thickness with the margin within which contact remembers sides [length]
   double speed{};         ///< Largest of the nodes [length/time]
   double acceleration{};  ///< Largest of the nodes [length/time^2]

@@ -93,7 +93,7 @@ class Finder {
     for (std::size_t n = 0; n < position.size(); ++n) {
       motion_[n].position = position[n];
     }
-    std::vector<Index> bodies(model.bodies.size());
+    std::vector<Index> bodies(at(model.meshed_body_count()));
     std::iota(bodies.begin(), bodies.end(), 0);
     search_.assign(model, bodies);
     search_.find_partners(model, positions(), 0.0);

@@ -44,7 +44,8 @@ void IslandContact::assign(const model::Model& model, std::span<const Index> bod
   report_ = {};
   searched_ = false;
   books_.assign(state, bodies);
-  enabled_ = model.contact.enabled && (bodies.size() + barriers.size() > 1 || model.can_touch(bodies[0], bodies[0]));
+  enabled_ = model.contact.enabled && !bodies.empty() &&
+             (bodies.size() + barriers.size() > 1 || model.can_touch(bodies[0], bodies[0]));
   with_edges_ = enabled_ && model.contact.edges;
   if (!enabled_) {
     return;

@@ -98,7 +98,8 @@ ordered_json penetration_list(const std::vector<Summary::Penetration>& list) {
                     {"elements", p.elements},
                     {"crossings", p.crossings},
                     {"crossing_body", p.crossing_body},
-                    {"crossing", p.crossing}});
+                    {"crossing", p.crossing},
+                    {"wall", p.wall}});
   }
   return json;
 }

@@ -92,7 +92,8 @@ struct Summary {
   };
   std::vector<Tie> ties;
 
-  /// Two bodies that were nearer before the start than their thicknesses allow, or passed through each other.
+  /// Two bodies that were nearer before the start than their thicknesses allow, or passed through each other, or a body
+  /// and a rigid wall.
   struct Penetration {
     std::string body;
     std::string other_body;                ///< May be the same
@@ -104,6 +105,7 @@ struct Summary {
     std::int64_t crossings{};              ///< Edges that pass through elements
     std::string crossing_body;             ///< That of the first such edge, which passes through the other body
     std::vector<std::int64_t> crossing{};  ///< Its nodes, and the element
+    std::string wall{};                    ///< Instead of another body, with no elements
   };
   struct InitialPenetrations {
     std::vector<Penetration> found;

@@ -259,7 +259,8 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   }
   build_node_sets(description, built.groups, model, errors);
   if (!positions.empty()) {
-    model.reference_position.assign(positions.begin(), positions.end());
+    // Those of rigid walls with mass come last, and have no nodes here yet.
+    std::copy_n(positions.begin(), model.reference_position.size(), model.reference_position.begin());
   }
   build_point_masses(description, model);
   build_masses(description, model);
@@ -272,6 +273,7 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   build_conditions(description, meshes, model, errors);
   build_ties(description, model, errors);
   find_body_ranges(model);
+  build_wall_bodies(description, model);
   return model;
 }
 

@@ -14,6 +14,14 @@ bool Model::can_touch(Index a, Index b) const noexcept {
          !std::binary_search(excluded_pairs.begin(), excluded_pairs.end(), std::pair{std::min(a, b), std::max(a, b)});
 }
 
+Index Model::meshed_body_count() const noexcept {
+  Index count = body_count();
+  while (count > 0 && bodies[at(count - 1)].wall != no_index) {
+    --count;
+  }
+  return count;
+}
+
 // sqrt(1 + xi^2) - xi, with the very value of one where there is no damping.
 double Model::first_step() const noexcept {
   const double xi = run.stiffness_damping / first_critical_step;

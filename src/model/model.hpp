@@ -66,6 +66,8 @@ struct Body {
   Index rigid{no_index};   ///< Into Model::rigid_bodies; no_index when the body deforms.
   /// Density of the elements over that of their material; not 1 in a rigid body whose mass is given.
   double density_factor{1.0};
+  /// Into Model::walls where the body is a rigid wall with mass: one node, at the wall's point, and no elements.
+  Index wall{no_index};
 };
 
 /// Degrees of freedom of one node held at rest; bit d is degree of freedom d (x y z rx ry rz).
@@ -165,6 +167,11 @@ struct Wall {
   Index curve{no_index};
   physics::DragLaw drag{};
   Index rubbing{no_index};  ///< Its number among the walls with friction or damping; no_index where it has none
+  double inverse_mass{};    ///< [1/mass]; 0: it stands or moves as told, whatever pushes it
+  Index body{no_index};     ///< That carries it, where it has a mass
+  /// Of a wall with mass: largest edge of the box of all bodies in the reference configuration, as a size to go by
+  /// [length].
+  double span{};
 };
 
 struct NamedNodes {
@@ -208,7 +215,7 @@ struct Model {
 
   std::vector<ElementBlock> blocks;
   std::vector<SectionData> sections;
-  std::vector<Body> bodies;
+  std::vector<Body> bodies;                          ///< Rigid walls with mass come after all others
   std::vector<RigidBody> rigid_bodies;               ///< In order of bodies
   std::vector<std::vector<std::string>> part_names;  ///< Of the described bodies' meshes, by element_part
 
@@ -244,6 +251,8 @@ struct Model {
   [[nodiscard]] Index node_count() const noexcept { return static_cast<Index>(reference_position.size()); }
   [[nodiscard]] Index element_count() const noexcept { return static_cast<Index>(triangle.size()); }
   [[nodiscard]] Index body_count() const noexcept { return static_cast<Index>(bodies.size()); }
+  /// Bodies that have a mesh, which are all but rigid walls with mass.
+  [[nodiscard]] Index meshed_body_count() const noexcept;
   [[nodiscard]] Index block_count() const noexcept { return static_cast<Index>(blocks.size()); }
   [[nodiscard]] const SectionData& section_of(Index element) const {
     return sections[at(blocks[at(element_block[at(element)])].section)];

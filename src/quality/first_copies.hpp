@@ -12,7 +12,7 @@ namespace fexp::quality {
 /// The first copy of every described body, in the order of the description. Copies of an array are alike.
 [[nodiscard]] inline std::vector<Index> first_copies(const model::Model& model) {
   std::vector<Index> bodies;
-  for (Index b = 0; b < model.body_count(); ++b) {
+  for (Index b = 0; b < model.meshed_body_count(); ++b) {
     if (bodies.empty() || model.bodies[at(b)].description != model.bodies[at(bodies.back())].description) {
       bodies.push_back(b);
     }

@@ -92,7 +92,7 @@ std::vector<char> can_be_hit(const model::Model& model, const std::vector<Index>
     excluded[at(b)] += a != b ? 1 : 0;
   }
   for (Index b = 0; b < model.body_count(); ++b) {
-    const bool others = model.contact.enabled && excluded[at(b)] < model.body_count() - 1;
+    const bool others = model.contact.enabled && excluded[at(b)] < model.meshed_body_count() - 1;
     hit[at(b)] = static_cast<char>(others || (pieces_of_body[at(b)] > 1 && model.can_touch(b, b)));
   }
   return hit;

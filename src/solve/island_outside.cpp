@@ -8,25 +8,8 @@
 #include "solve/loads.hpp"
 #include "solve/walls.hpp"
 
-/// What acts on an island from outside: loads, rigid walls and conditions, with the bodies' books.
+/// What acts on an island's bodies besides each other: loads, rigid walls and conditions, with the bodies' books.
 namespace fexp::solve {
-
-/// Where the walls are at the end of the step, and how far they come in it.
-void IslandSolver::move_walls(const Step& step) {
-  for (std::size_t w = 0; w < step.model.walls.size(); ++w) {
-    wall_points_[w] = wall_point(step.model, step.model.walls[w], step.end_time);
-    wall_ways_[w] = wall_points_[w] - wall_point(step.model, step.model.walls[w], step.end_time - step.dt);
-  }
-}
-
-/// Work that the walls do on a body with the forces of one end of the step.
-double IslandSolver::half_work_of_walls(const BodyActions& actions) const {
-  double work = 0.0;
-  for (std::size_t w = 0; w < wall_ways_.size(); ++w) {
-    work += 0.5 * dot(actions.wall_force[w], wall_ways_[w]);
-  }
-  return work;
-}
 
 void IslandSolver::load_nodes(const Step& step) {
   parallel::for_each(static_cast<Index>(bodies_.size()), body_grain, [&](Index i) {
@@ -44,6 +27,9 @@ void IslandSolver::clear_actions(const Step& step, std::size_t index) {
   partial.barrier_frequency2 = 0.0;
   const std::size_t walls = step.model.walls.size();
   std::fill_n(wall_partials_.begin() + static_cast<std::ptrdiff_t>(index * walls), walls, Vec3d{});
+  for (const Index w : own_walls_) {
+    touches_[index * walls + at(w)] = {};
+  }
 }
 
 /// What acts on a node of a piece from outside, booked in the piece's partial sums.
@@ -58,22 +44,35 @@ NodalAction IslandSolver::act_on_node(const Step& step, Index n, std::size_t ind
     partial.external_work +=
         step.half_dt() * (dot(outside.force, motion.velocity) + dot(outside.moment, motion.rotation_rate));
   }
-  double stiffness = 0.0;
-  for (std::size_t w = 0; w < walls; ++w) {
-    const model::Wall& wall = model.walls[w];
-    WallReaction reaction = wall_reaction(model, wall, wall_points_[w], n, motion.position);
+  double stiffness = 0.0, stiffest = 0.0;
+  Index stiffest_wall = no_index;
+  for (const Index w : walls_) {
+    const model::Wall& wall = model.walls[at(w)];
+    WallReaction reaction = wall_reaction(model, wall, wall_points_[at(w)], n, motion.position);
     if (wall.rubbing != no_index) {
       // Inside a step the velocity is that of the node's way.
-      const WallSlip slip{step.dt * motion.velocity - wall_ways_[w], step.dt};
+      const WallSlip slip{step.dt * motion.velocity - wall_ways_[at(w)], step.dt};
       Vec3d& drag = step.state.wall_drag[at(n) * at(model.rubbing_walls) + at(wall.rubbing)];
       partial.wall_dissipation += rub(model, wall, slip, n, reaction, drag);
     }
     outside.force += reaction.force;
     partial.barrier_energy += reaction.energy;
-    stiffness += reaction.stiffness;
-    wall_partials_[index * walls + w] += reaction.force;
+    wall_partials_[index * walls + at(w)] += reaction.force;
+    if (reaction.stiffness > 0.0) {
+      stiffness += reaction.stiffness;
+      stiffest_wall = reaction.stiffness > stiffest ? w : stiffest_wall;
+      stiffest = maximum(stiffest, reaction.stiffness);
+      if (wall.inverse_mass > 0.0) {
+        touches_[index * walls + at(w)].stiffness += reaction.stiffness;
+        touches_[index * walls + at(w)].damping += reaction.damping;
+      }
+    }
   }
-  partial.barrier_frequency2 = maximum(partial.barrier_frequency2, stiffness / model.mass[at(n)]);
+  if (const double frequency2 = stiffness / model.mass[at(n)]; frequency2 > partial.barrier_frequency2) {
+    partial.barrier_frequency2 = frequency2;
+    partial.barrier_node = n;
+    partial.barrier_wall = stiffest_wall;
+  }
   partial.force += outside.force;
   partial.moment += cross(motion.position, outside.force) + outside.moment;
   return outside;
@@ -111,19 +110,28 @@ void IslandSolver::act_on_bodies(const Step& step) {
   }
   const std::size_t walls = step.model.walls.size();
   barrier_frequency2_ = 0.0;
+  barrier_node_ = barrier_wall_ = no_index;
   std::size_t piece = 0;
   for (const Index body : bodies_) {
     BodyActions& actions = workspace.actions[at(body)];
     actions.force = workspace.body_contact[at(body)].barrier_force;
     actions.moment = workspace.body_contact[at(body)].barrier_moment;
     std::fill(actions.wall_force.begin(), actions.wall_force.end(), Vec3d{});
+    if (step.model.bodies[at(body)].wall != no_index) {
+      push_wall(step, body, piece++);
+      continue;
+    }
     double barrier_energy = 0.0, dissipation = 0.0;
     for (; piece < pieces_.size() && pieces_[piece].body == body; ++piece) {
       actions.force += partials_[piece].force;
       actions.moment += partials_[piece].moment;
       barrier_energy += partials_[piece].barrier_energy;
       dissipation += partials_[piece].wall_dissipation;
-      barrier_frequency2_ = maximum(barrier_frequency2_, partials_[piece].barrier_frequency2);
+      if (partials_[piece].barrier_frequency2 > barrier_frequency2_) {
+        barrier_frequency2_ = partials_[piece].barrier_frequency2;
+        barrier_node_ = partials_[piece].barrier_node;
+        barrier_wall_ = partials_[piece].barrier_wall;
+      }
       for (std::size_t w = 0; w < walls; ++w) {
         actions.wall_force[w] += wall_partials_[piece * walls + w];
       }
@@ -132,6 +140,7 @@ void IslandSolver::act_on_bodies(const Step& step) {
     step.state.ledger[at(body)].wall_dissipation += dissipation;
     hold_constraints(step.model, step.state, body, actions);
   }
+  join_by_walls(step);
 }
 
 /// What follows the closing half steps of all pieces: prescribed velocities, and the bodies' books.

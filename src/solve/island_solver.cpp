@@ -30,6 +30,8 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
   border_pieces_.clear();
   rigid_pieces_.clear();
   rigid_.clear();
+  walls_.clear();
+  own_walls_.clear();
   rigid_nodes_ = 0;
   inertia_ratio_ = 1.0;
   elements_ = 0;
@@ -48,6 +50,12 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
       pieces_.push_back({index, p, patches.inner_node.data(), patches.patches[at(p)].nodes});
     }
     const IndexRange border = patches.body_border[at(index)];
+    if (body.wall != no_index) {
+      // Neither a patch nor a border: its node waits for the forces of all others.
+      own_walls_.push_back(body.wall);
+      pieces_.push_back({index, no_index, patches.border_node.data(), border});
+      continue;
+    }
     for (Index begin = border.begin; begin < border.end; begin += border_nodes) {
       (body.rigid == no_index ? border_pieces_ : rigid_pieces_).push_back(static_cast<Index>(pieces_.size()));
       pieces_.push_back(
@@ -60,12 +68,20 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
     }
   }
   assign_ties(model);
+  for (std::size_t w = 0; w < model.walls.size(); ++w) {
+    const auto wall = static_cast<Index>(w);
+    if (model.walls[w].body == no_index || std::ranges::find(own_walls_, wall) != own_walls_.end()) {
+      walls_.push_back(wall);
+    }
+  }
   partials_.resize(pieces_.size());
-  wall_partials_.resize(pieces_.size() * model.walls.size());
+  wall_partials_.assign(pieces_.size() * model.walls.size(), {});
+  touches_.assign(pieces_.size() * model.walls.size(), {});
   wall_points_.resize(model.walls.size());
   wall_ways_.resize(model.walls.size());
   travelled_.resize(bodies_.size());
-  contact_.assign(model, bodies_, barriers_, state);
+  // Walls with mass, the last of the bodies, have no surface that contact knows.
+  contact_.assign(model, std::span<const Index>(bodies_).first(bodies_.size() - own_walls_.size()), barriers_, state);
   contact_report_ = {};
   contact_written_ = true;
 }
@@ -143,8 +159,9 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
     if (total.contact_frequency2 < frequency2) {
       total.contact_frequency2 = frequency2;
       const bool by_wall = barrier_frequency2_ > contact_report_.max_stiffness_over_mass;
-      total.stiffest_node = by_wall ? no_index : contact_report_.stiffest_node;
+      total.stiffest_node = by_wall ? barrier_node_ : contact_report_.stiffest_node;
       total.stiffest_element = by_wall ? no_index : contact_report_.stiffest_element;
+      total.stiffest_wall = by_wall ? barrier_wall_ : no_index;
     }
     total.candidates = contact_report_.candidates;
     total.searches = contact_report_.searches - searches_before;
@@ -201,6 +218,12 @@ void IslandSolver::opening_half(const Step& step) {
       ledger.external_angular_impulse += half * actions.moment;
     }
   }
+  open_pieces(step);
+  follow_walls(step);
+}
+
+/// The opening half step of all nodes, and their motion.
+void IslandSolver::open_pieces(const Step& step) {
   const auto count = static_cast<Index>(pieces_.size());
   const Index pieces_per_task = grain(pieces_.size(), nodes_, task_nodes);
   // One pass over the nodes unless prescribed or tied velocities come in between.

@@ -9,6 +9,7 @@
 #include "model/model.hpp"
 #include "model/state.hpp"
 #include "solve/constraints.hpp"
+#include "solve/walls.hpp"
 #include "solve/workspace.hpp"
 
 namespace fexp::solve {
@@ -40,9 +41,10 @@ struct IslandReport {
   Index stop_body{no_index};
   Index stop_node{no_index};      ///< For not_finite: the lowest node concerned.
   double contact_frequency2{};    ///< Largest bound of omega^2 from contact and walls seen [1/time^2]
-  Index stiffest_node{no_index};  ///< Of the pair of contact that has it, if one has
+  Index stiffest_node{no_index};  ///< Of the pair that has it
   Index stiffest_element{no_index};
-  Index active_pairs{};  ///< At the last step
+  Index stiffest_wall{no_index};  ///< Instead of an element
+  Index active_pairs{};           ///< At the last step
   Index most_active_pairs{};
   Index candidates{};
   Index searches{};
@@ -97,6 +99,8 @@ class IslandSolver {
     double damping_work{};
     double barrier_energy{};
     double barrier_frequency2{};
+    Index barrier_node{no_index};  ///< That has it
+    Index barrier_wall{no_index};
     double wall_dissipation{};
     Vec3d force;
     Vec3d moment;
@@ -126,6 +130,7 @@ class IslandSolver {
   struct Step;  // defined in solve/island_step.hpp
 
   void opening_half(const Step& step);
+  void open_pieces(const Step& step);
   void clear_contact(const Step& step);
   void contact_forces(const Step& step);
   void load_nodes(const Step& step);
@@ -134,7 +139,10 @@ class IslandSolver {
   void advance_nodes(const Step& step, Pass pass, const NodeKernelArguments& arguments, std::size_t index);
   void accelerate(const Step& step, const NodeKernelArguments& k, std::size_t index);
   void move_walls(const Step& step);
+  void follow_walls(const Step& step);
   [[nodiscard]] double half_work_of_walls(const BodyActions& actions) const;
+  void push_wall(const Step& step, Index body, std::size_t piece);
+  void join_by_walls(const Step& step);
   void clear_actions(const Step& step, std::size_t index);
   NodalAction act_on_node(const Step& step, Index n, std::size_t index);
   void act_on_bodies(const Step& step);
@@ -179,12 +187,17 @@ class IslandSolver {
   std::vector<RigidPart> rigid_;      // Rigid bodies
   std::vector<IslandTie> ties_;       // Of its bodies' nodes, ascending
   std::vector<Partial> partials_;     // [pieces]
-  std::vector<Vec3d> wall_partials_;  // [pieces][walls]
+  std::vector<Vec3d> wall_partials_;  // [pieces][walls]: forces
+  std::vector<WallTouch> touches_;    // [pieces][walls]: of walls with mass
+  std::vector<Index> walls_;          // That act on the island: those that move as told, and its own
+  std::vector<Index> own_walls_;      // With mass, among its bodies
   std::vector<Vec3d> wall_points_;    // [walls]: at the end of the step
   std::vector<Vec3d> wall_ways_;      // [walls]: in the step
   std::vector<double> travelled_;     // [bodies of the island]: bound of the distance since the epoch's start
   contact::ContactReport contact_report_;
   double barrier_frequency2_{};
+  Index barrier_node_{no_index};
+  Index barrier_wall_{no_index};
   Index elements_{};
   Index nodes_{};
   Index rigid_nodes_{};

@@ -22,23 +22,23 @@ Vec3d wall_point(const model::Model& model, const model::Wall& wall, double time
   return wall.point + size * wall.motion;
 }
 
+WallDistance wall_distance(const model::Wall& wall, const Vec3d& point, const Vec3d& position) noexcept {
+  Vec3d arm = position - point;
+  if (wall.shape == model::WallShape::plane) {
+    return {dot(arm, wall.direction), wall.direction};
+  }
+  if (wall.shape == model::WallShape::cylinder) {
+    arm -= dot(arm, wall.direction) * wall.direction;
+  }
+  const double length = square_root(dot(arm, arm));
+  // On the axis or in the centre there is no way that is shorter than the others.
+  const double scale = length > 0.0 ? (wall.inside ? -1.0 : 1.0) / length : 0.0;
+  return {wall.inside ? wall.radius - length : length - wall.radius, scale * arm};
+}
+
 WallReaction wall_reaction(const model::Model& model, const model::Wall& wall, const Vec3d& point, Index node,
                            const Vec3d& position) noexcept {
-  Vec3d arm = position - point;
-  Vec3d normal = wall.direction;
-  double distance = 0.0;  // On the free side
-  if (wall.shape == model::WallShape::plane) {
-    distance = dot(arm, normal);
-  } else {
-    if (wall.shape == model::WallShape::cylinder) {
-      arm -= dot(arm, wall.direction) * wall.direction;
-    }
-    const double length = square_root(dot(arm, arm));
-    distance = wall.inside ? wall.radius - length : length - wall.radius;
-    // On the axis or in the centre there is no way that is shorter than the others.
-    const double scale = length > 0.0 ? (wall.inside ? -1.0 : 1.0) / length : 0.0;
-    normal = scale * arm;
-  }
+  const auto [distance, normal] = wall_distance(wall, point, position);
   const double depth = model.half_thickness[at(node)] - distance;
   if (!(depth > 0.0)) {
     return {{}, 0.0, 0.0, normal};
@@ -59,13 +59,17 @@ double rub(const model::Model& model, const model::Wall& wall, const WallSlip& s
     }
     return dissipated;
   }
+  const double inverse_mass = 1.0 / model.mass[at(node)] + wall.inverse_mass;
+  if (wall.inverse_mass > 0.0) {
+    reaction.damping = 2.0 * wall.drag.damping * square_root(reaction.stiffness / inverse_mass);
+  }
   if (slip.dt == 0.0) {
     reaction.energy += physics::stored_energy(drag, reaction.normal, reaction.stiffness);
   } else {
-    const physics::Drag now = physics::drag_of(wall.drag,
-                                               {reaction.normal, dot(reaction.force, reaction.normal),
-                                                reaction.stiffness, 1.0 / model.mass[at(node)], slip.way, slip.dt},
-                                               before);
+    const physics::Drag now = physics::drag_of(
+        wall.drag,
+        {reaction.normal, dot(reaction.force, reaction.normal), reaction.stiffness, inverse_mass, slip.way, slip.dt},
+        before);
     drag = now.force;
     reaction.energy += now.stored;
     dissipated = now.dissipated;
@@ -73,6 +77,17 @@ double rub(const model::Model& model, const model::Wall& wall, const WallSlip& s
   reaction.force += drag;
   reaction.stiffness *= wall.drag.frequency2_factor();
   return dissipated;
+}
+
+double joined_frequency2(double nodes2, const WallTouch& touch, double inverse_mass) noexcept {
+  const double own2 = inverse_mass * touch.stiffness, rate = inverse_mass * touch.damping;
+  if (!(rate > 0.0)) {
+    return nodes2 + own2;
+  }
+  // The dt of own2 dt^2/4 + rate dt/2 = 1 is 2 over this.
+  const double own = 0.5 * rate + square_root(0.25 * rate * rate + own2);
+  const double sum = square_root(nodes2) + own;
+  return sum * sum;
 }
 
 }  // namespace fexp::solve

@@ -33,7 +33,7 @@ class Times(program.Case):
             summary = self.run_deck("--out", out, duration=end, results_interval=results, history_interval=history)
             self.assertEqual(self.frame_times(out), multiples(results, end))
             self.assertEqual(summary["frames"], len(multiples(results, end)))
-            for name in ("energies", "momenta", "steps", "planes"):
+            for name in ("energies", "momenta", "steps", "walls"):
                 times = [float(row["time"]) for row in self.table(f"{out}/{name}.csv")[0]]
                 self.assertEqual(len(times), len(multiples(history, end)))
                 for time, expected in zip(times, multiples(history, end)):
@@ -56,7 +56,7 @@ class Histories(program.Case):
 
     def test_columns_have_names_and_units(self):
         headers = {name: self.table(f"here/{name}.csv")[1] for name in
-                   ("energies", "momenta", "steps", "planes", "nodes", "bodies")}
+                   ("energies", "momenta", "steps", "walls", "nodes", "bodies")}
         for name, header in headers.items():
             self.assertEqual(header[:2], ["step", "time [ms]"], name)
         self.assertEqual(headers["energies"][2:],
@@ -67,7 +67,7 @@ class Histories(program.Case):
         self.assertEqual(headers["steps"][2:],
                          ["dt [ms]", "critical_step [ms]", "islands", "largest_island_elements", "candidates",
                           "contacts", "searches", "rollbacks", "deepest_penetration", "deleted"])
-        self.assertEqual(headers["planes"][2:], ["floor_x [kN]", "floor_y [kN]", "floor_z [kN]"])
+        self.assertEqual(headers["walls"][2:], ["floor_x [kN]", "floor_y [kN]", "floor_z [kN]"])
         self.assertEqual(headers["nodes"][2:5], ["set", "body", "node"])
         self.assertIn("acceleration_z [mm/ms^2]", headers["nodes"])
         self.assertIn("centre_x [mm]", headers["bodies"])
@@ -113,11 +113,11 @@ class Histories(program.Case):
 class Planes(program.Case):
     def test_the_plane_s_force_is_what_changes_the_momentum(self):
         self.run_deck("--out", "here", history_interval=0.002, results_interval=2.0)
-        planes = self.table("here/planes.csv")[0]
+        walls = self.table("here/walls.csv")[0]
         momenta = self.table("here/momenta.csv")[0]
-        self.assertTrue(all(int(row["step"]) <= n for n, row in enumerate(planes)), "a row for every step")
+        self.assertTrue(all(int(row["step"]) <= n for n, row in enumerate(walls)), "a row for every step")
         impulse = 0.0
-        for before, row in zip(planes, planes[1:]):
+        for before, row in zip(walls, walls[1:]):
             dt = float(row["time"]) - float(before["time"])
             impulse += 0.5 * dt * (float(before["floor_z"]) + float(row["floor_z"]))
         change = float(momenta[-1]["linear_z"]) - float(momenta[0]["linear_z"])

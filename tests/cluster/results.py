@@ -7,7 +7,7 @@ import json
 import h5py
 import numpy
 
-HISTORIES = ("energies", "momenta", "nodes", "bodies", "planes", "hashes")
+HISTORIES = ("energies", "momenta", "nodes", "bodies", "walls", "hashes")
 # How much was searched and found on the way, which depends on when islands came from elsewhere.
 OF_WORK = ("candidates", "searches")
 

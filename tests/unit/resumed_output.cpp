@@ -227,7 +227,7 @@ void expect_same_results(const fs::path& one, const fs::path& other) {
 
 /// All files but the log, which has times of day.
 void expect_same_files(const fs::path& one, const fs::path& other) {
-  for (const char* name : {"energies.csv", "momenta.csv", "steps.csv", "planes.csv", "nodes.csv", "elements.csv",
+  for (const char* name : {"energies.csv", "momenta.csv", "steps.csv", "walls.csv", "nodes.csv", "elements.csv",
                            "bodies.csv", "hashes.csv", "results.xdmf2"}) {
     EXPECT_EQ(io::read_whole(one / name), io::read_whole(other / name)) << name;
   }
@@ -386,7 +386,7 @@ TEST_F(ResumedOutput, files_that_are_not_what_the_run_had_written_are_refused_wi
   fs::rename(directory_ / "copy", killed.path / "momenta.csv");
 
   OutputMark other = mark;
-  other.csv_bytes.erase("planes");
+  other.csv_bytes.erase("walls");
   expect_refused(killed.path, other, "did not write this file");
   // Nothing of all that has spoilt the run.
   resume(killed.path, mark, 8, std::nullopt);

@@ -349,6 +349,22 @@ TEST(walls_with_mass, are_in_one_island_with_all_that_may_come_to_them) {
   EXPECT_GT(apart, 500);
 }
 
+TEST(walls_with_mass, have_a_stiffness_in_series_with_that_of_the_node) {
+  Description d = plate();
+  add_plane(d, "light", 0.005, -1.0, 1.0e-3);
+  add_plane(d, "told", 0.005, -1.0, -1.0);
+  add_plane(d, "given", 0.005, -1.0, 1.0e-3).stiffness = 7.0;
+  const model::Model model = test::build(d);
+  const auto stiffness = [&](std::size_t w) {
+    return solve::wall_reaction(model, model.walls[w], model.walls[w].point, 12, model.reference_position[12])
+        .stiffness;
+  };
+  const double frequency = 0.3 / model.first_critical_step, square = frequency * frequency, mass = model.mass[12];
+  EXPECT_NEAR(stiffness(0) * (1.0 / mass + 1.0e3), square, 1e-12 * square);
+  EXPECT_EQ(stiffness(1), model.contact_stiffness[12]);
+  EXPECT_EQ(stiffness(2), 7.0);
+}
+
 TEST(wall_penetrations, are_counted_by_body_and_wall) {
   Description d = plate();
   test::add_body(d, "high", model::Plate{1.0, 1.0, 2, 2, "one"}).translate = {0.0, 0.0, 1.0};

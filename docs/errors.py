@@ -184,6 +184,12 @@ CASES = {
         "A mass of a body that deforms": Case(('name = "plate"', 'name = "plate"\nmass = 2.0')),
         "A wall with a velocity and a displacement": Case(
             ("normal = [0.0, 0.0, 1.0]", "normal = [0.0, 0.0, 1.0]\nvelocity = [0, 0, 1]\ndisplacement = [0, 0, 1]")),
+        "A force on a wall without mass": Case(
+            ("normal = [0.0, 0.0, 1.0]", "normal = [0.0, 0.0, 1.0]\nforce = [0.0, 0.0, 5.0]")),
+        "A wall with mass that is told how to move": Case(
+            ("normal = [0.0, 0.0, 1.0]", "normal = [0.0, 0.0, 1.0]\nmass = 5.0\nvelocity = [0.0, 0.0, 1.0]")),
+        "A wall with mass that begins where it cannot go": Case(
+            ("normal = [0.0, 0.0, 1.0]", "normal = [0.0, 0.0, 1.0]\nmass = 5.0\ninitial_velocity = [1.0, 0.0, 1.0]")),
         "A curve of a wall that stands": Case(
             ('set = "rim"', 'set = "rim"\n\n[[curve]]\nname = "ramp"\npoints = [[0, 0], [1, 1]]'),
             ("normal = [0.0, 0.0, 1.0]", 'normal = [0.0, 0.0, 1.0]\ncurve = "ramp"')),

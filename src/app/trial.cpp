@@ -27,7 +27,7 @@ Trial run_trial(const Case& loaded, double seconds) {
   Trial trial;
   for (Index b = 0; b < loaded.model.body_count(); ++b) {
     const model::BodyLedger& ledger = simulation.state().ledger[at(b)];
-    if (ledger.contact_energy > 0.0 || ledger.barrier_energy > 0.0) {
+    if (ledger.contact_energy > 0.0) {
       trial.touching.push_back(b);
     }
   }

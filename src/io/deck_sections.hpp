@@ -45,8 +45,8 @@ void for_each_section(SomeDeck& deck, Visitor& visitor) {
                optional, d.ties);
   visitor.list(
       "plane",
-      "A rigid wall that nodes cannot pass: a plane. Walls stand, or move as told whatever touches them; a wall "
-      "with a mass is a body with `rigid = true`.",
+      "A rigid wall that nodes cannot pass: a plane. Walls stand, or move as told whatever touches them, or have a "
+      "mass and move by what pushes them.",
       optional, d.planes);
   visitor.list("cylinder", "A rigid wall that nodes cannot pass: an endless cylinder, from outside or inside.",
                optional, d.cylinders);

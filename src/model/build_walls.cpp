@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "model/build.hpp"
 #include "model/condition_lookup.hpp"
 #include "model/held_directions.hpp"
 
@@ -141,6 +142,8 @@ void build_wall_bodies(const Description& description, Model& model) {
     body.mass = given[w]->mass;
     body.wall = static_cast<Index>(w);
     wall.body = model.body_count();
+    const double frequency = penalty_courant / model.first_critical_step;
+    wall.mass_stiffness = model.contact.penalty_scale * given[w]->mass * frequency * frequency;
     wall.span = std::max({edges.x, edges.y, edges.z});
     model.bodies.push_back(std::move(body));
   }

@@ -169,6 +169,8 @@ struct Wall {
   Index rubbing{no_index};  ///< Its number among the walls with friction or damping; no_index where it has none
   double inverse_mass{};    ///< [1/mass]; 0: it stands or moves as told, whatever pushes it
   Index body{no_index};     ///< That carries it, where it has a mass
+  /// Of a wall with mass: c^2 M/dt^2 like that of a node, in series with which it is the stiffness where none is given.
+  double mass_stiffness{};
   /// Of a wall with mass: largest edge of the box of all bodies in the reference configuration, as a size to go by
   /// [length].
   double span{};

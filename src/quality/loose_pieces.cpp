@@ -83,17 +83,19 @@ std::vector<char> acted_upon(const model::Model& model, const Pieces& pieces) {
   return acted;
 }
 
-/// Whether contact may bring other bodies, or other pieces of the same, against a body.
+/// Whether contact may bring other bodies, or other pieces of the same, against a body, or a rigid wall may come to it.
 std::vector<char> can_be_hit(const model::Model& model, const std::vector<Index>& pieces_of_body) {
   std::vector<Index> excluded(model.bodies.size(), 0);
   std::vector<char> hit(model.bodies.size(), 0);
+  const bool walls_move = std::any_of(model.walls.begin(), model.walls.end(),
+                                      [](const model::Wall& wall) { return wall.moves || wall.body != no_index; });
   for (const auto& [a, b] : model.excluded_pairs) {
     excluded[at(a)] += a != b ? 1 : 0;
     excluded[at(b)] += a != b ? 1 : 0;
   }
   for (Index b = 0; b < model.body_count(); ++b) {
     const bool others = model.contact.enabled && excluded[at(b)] < model.meshed_body_count() - 1;
-    hit[at(b)] = static_cast<char>(others || (pieces_of_body[at(b)] > 1 && model.can_touch(b, b)));
+    hit[at(b)] = static_cast<char>(others || walls_move || (pieces_of_body[at(b)] > 1 && model.can_touch(b, b)));
   }
   return hit;
 }

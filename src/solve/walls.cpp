@@ -8,7 +8,12 @@ namespace fexp::solve {
 namespace {
 
 double wall_stiffness(const model::Model& model, const model::Wall& wall, Index node) noexcept {
-  return wall.stiffness >= 0.0 ? wall.stiffness : model.contact_stiffness[at(node)];
+  if (wall.stiffness >= 0.0) {
+    return wall.stiffness;
+  }
+  const double stiffness = model.contact_stiffness[at(node)];
+  // A wall without mass is a side that does not give way, as a barrier is.
+  return wall.body == no_index ? stiffness : stiffness * wall.mass_stiffness / (stiffness + wall.mass_stiffness);
 }
 
 }  // namespace

@@ -60,6 +60,10 @@ const std::vector<Scene>& scenes() {
        }},
       {"rigid_machine", test::rigid_machine, 0.1,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 20; }},
+      {"walls_with_mass", test::walls_with_mass, 0.12,
+       [](const test::Outcome& o) {
+         return o.extremes.most_active_pairs > 0 && o.extremes.most_islands > o.extremes.fewest_islands;
+       }},
       {"swarm", test::swarm, 0.1,
        [](const test::Outcome& o) {
          return o.extremes.most_active_pairs > 20 && o.extremes.most_islands > o.extremes.fewest_islands;

@@ -282,6 +282,37 @@ inline model::Description rigid_machine() {
   return d;
 }
 
+/// Walls with mass that rub: a table at rest on which a soft and a rigid ball fall, and high above two soft balls with
+/// a heavy sphere between them, one of which it throws down to the others.
+inline model::Description walls_with_mass() {
+  model::Description d = with_contact(0.02);
+  d.contact.friction = 0.2;
+  d.contact.damping = 0.1;
+  const std::vector<Vec3d> places{{0.0, 0.0, 0.35}, {1.2, 0.0, 0.37}, {0.1, 0.0, 1.75}, {0.0, 0.1, 2.9}};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    model::BodyDescription& ball = add_body(d, "ball " + std::to_string(i), sphere(0.3, i == 0 ? 7 : 4));
+    ball.translate = places[i];
+    ball.rigid = i == 1;
+    ball.velocity = {0.3, 0.0, i < 2 ? -5.0 : 0.0};
+    ball.angular_velocity = {0.0, 3.0, 0.0};
+  }
+  model::RigidPlane& table = d.planes.emplace_back();
+  table.name = "table";
+  table.normal = {0.0, 0.1, 1.0};
+  table.mass = 30.0;
+  table.free = {"x", "y", "z"};
+  model::RigidSphere& shot = d.spheres.emplace_back();
+  shot.name = "shot";
+  shot.centre = {0.0, 0.0, 2.3};
+  shot.radius = 0.2;
+  shot.mass = 60.0;
+  shot.initial_velocity = {0.0, 0.0, -15.0};
+  shot.force = {0.0, 50.0, 0.0};
+  d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
+  d.run.energy_drift_limit = 1.0;
+  return d;
+}
+
 /// What must be the same however a scene is computed, and what proves that the scene is worth computing.
 /// A panel with a web welded to it, a flap that hangs on it by a hinge and on a rigid block at the other end; the panel
 /// is driven along one edge and hit by a ball.

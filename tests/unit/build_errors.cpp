@@ -234,6 +234,47 @@ TEST(build_errors, walls_that_move_in_no_way_that_can_be_are_refused) {
   expect_one(errors_of(d), {"\"roll\" is already that of another wall"});
 }
 
+TEST(build_errors, walls_with_mass_that_cannot_be_are_refused) {
+  Description d = good();
+  d.planes.push_back({{"lid"}, {0.0, 0.0, 1.0}, {0.0, 0.0, -1.0}});
+  d.planes[0].place = line_7;
+  model::RigidPlane& lid = d.planes[0];
+  lid.force = {0.0, 0.0, 1.0};
+  expect_one(errors_of(d), {"plane \"lid\" has a key force and no mass"});
+  lid.force = {};
+  lid.free = {"z"};
+  expect_one(errors_of(d), {"plane \"lid\" has a key free and no mass"});
+  lid.mass = 2.0;
+  EXPECT_TRUE(errors_of(d).empty());
+  lid.velocity = {0.0, 0.0, -1.0};
+  expect_one(errors_of(d), {"plane \"lid\" has a mass and a velocity", "initial_velocity"});
+  lid.velocity = {};
+  lid.curve = "ramp";
+  expect_one(errors_of(d), {"plane \"lid\" names a curve and has no force"});
+  lid.force = {0.0, 0.0, 1.0};
+  EXPECT_TRUE(errors_of(d).empty());
+  lid.initial_velocity = {0.0, 0.5, -1.0};
+  expect_one(errors_of(d), {"plane \"lid\" has an initial_velocity along which it is not free"});
+  lid.free = {"z", "y"};
+  EXPECT_TRUE(errors_of(d).empty());
+  lid.guide = {0.0, 0.5, -1.0};
+  expect_one(errors_of(d), {"plane \"lid\" has free directions and a guide"});
+  lid.free.reset();
+  EXPECT_TRUE(errors_of(d).empty());
+  lid.guide = {0.0, 0.0, 0.0};
+  expect_one(errors_of(d), {"the guide of plane \"lid\" has no direction"});
+  lid.guide.reset();
+  lid.initial_velocity = {};
+  lid.free = std::vector<std::string>{};
+  expect_one(errors_of(d), {"plane \"lid\" has a mass and is free in no direction"});
+  lid.free.reset();
+  lid.name = "plate";
+  expect_one(errors_of(d), {"\"plate\" is already that of a body"});
+  lid.name = "lid";
+  lid.normal = {};
+  expect_one(errors_of(d), {"the normal of plane \"lid\" has no direction"});
+}
+
 TEST(build_errors, a_radial_velocity_on_its_axis_and_an_axis_without_direction_are_refused) {
   InitialVelocity given;
   given.set = "edge";  // x = 0, y from 0 to 2

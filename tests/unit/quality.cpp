@@ -258,6 +258,15 @@ TEST(quality, a_piece_is_idle_when_nothing_acts_on_it_and_nothing_can_hit_it) {
   EXPECT_FALSE(kind([](model::Description& d) { d.symmetry.push_back({"all", {1.0, 0.0, 0.0}, {}}); }));
   EXPECT_FALSE(kind([](model::Description& d) { test::fix(d, "all", {"x"}); }));
   EXPECT_FALSE(kind([](model::Description& d) { d.prescribed.push_back({"all", "x", 1.0, "", {}}); }));
+  EXPECT_TRUE(kind([](model::Description& d) { d.spheres.push_back({{"ball"}, {0.0, 0.0, 5.0}, 1.0}); }));
+  EXPECT_FALSE(kind([](model::Description& d) {
+    d.spheres.push_back({{"ball"}, {0.0, 0.0, 5.0}, 1.0});
+    d.spheres[0].velocity = {0.0, 0.0, -1.0};
+  }));
+  EXPECT_FALSE(kind([](model::Description& d) {
+    d.spheres.push_back({{"ball"}, {0.0, 0.0, 5.0}, 1.0});
+    d.spheres[0].mass = 1.0;
+  }));
 }
 
 TEST(quality, what_another_body_can_hit_is_waiting_and_what_it_cannot_is_idle) {

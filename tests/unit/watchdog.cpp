@@ -322,7 +322,7 @@ TEST(watchdog, a_step_that_collapses_through_contact_is_told_from_one_that_an_el
   EXPECT_EQ(contact::body_of_element(model, report.fault.element), report.fault.other);
 }
 
-TEST(watchdog, a_step_that_collapses_through_a_wall_names_no_body) {
+TEST(watchdog, a_step_that_collapses_through_a_wall_names_the_wall_and_the_body) {
   auto d = two_falls(0.0, 0.0);
   d.contact.enabled = false;
   d.bodies.back().velocity = {0.0, 0.0, -1.0};
@@ -331,8 +331,9 @@ TEST(watchdog, a_step_that_collapses_through_a_wall_names_no_body) {
   Simulation simulation(model, solve::KernelChoice::automatic);
   const EpochReport report = run(simulation, 0.05);
   ASSERT_EQ(report.fault.kind, FaultKind::step_collapsed);
-  EXPECT_NE(report.fault.message.find("rigid wall"), std::string::npos) << report.fault.message;
-  EXPECT_EQ(report.fault.body, no_index);
+  EXPECT_NE(report.fault.message.find("rigid wall \"floor\" on node"), std::string::npos) << report.fault.message;
+  EXPECT_EQ(model.node_body[at(report.fault.node)], report.fault.body);
+  EXPECT_NE(report.fault.message.find(model.bodies[at(report.fault.body)].name), std::string::npos);
 }
 
 TEST(watchdog, a_rigid_body_that_turns_too_fast_is_not_called_a_crushed_element) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "solve/diagnostics.hpp"
 #include "support/contact.hpp"
 #include "support/models.hpp"
@@ -127,6 +129,28 @@ TEST(contact_pairs, that_are_stiffer_let_less_in) {
   d.contact.pairs = {pair("plate", "ball")};
   d.contact.pairs[0].penalty_scale = 4.0;
   EXPECT_LT(run(d).deepest, 0.7 * plain);
+}
+
+TEST(contact_pairs, harden_unless_they_or_all_have_a_given_stiffness_or_the_deck_says_how_much) {
+  auto d = thrown();
+  d.contact.pairs = {pair("plate", "ball"), pair("ball", "ball")};
+  d.contact.pairs[0].stiffness = 1.0e4;
+  d.contact.pairs[1].penalty_scale = 2.0;
+  const auto hardenings = [&] {
+    std::vector<double> all;
+    for (const model::ContactLaw& law : test::build(d).contact_laws.laws) {
+      all.push_back(law.hardening);
+    }
+    return all;
+  };
+  constexpr double usual = model::ContactSettings::usual_hardening;
+  EXPECT_EQ(hardenings(), (std::vector{usual, 0.0, usual}));
+  d.contact.hardening = 3.5;
+  EXPECT_EQ(hardenings(), (std::vector{3.5, 3.5, 3.5}));
+  d.contact.hardening.reset();
+  d.contact.stiffness = 1.0e5;
+  d.contact.pairs = {};
+  EXPECT_EQ(hardenings(), (std::vector{0.0}));
 }
 
 TEST(penalty, by_element_is_half_of_modulus_times_thickness_of_the_softest_shell) {

@@ -18,7 +18,7 @@ struct Trial {
   double expected_seconds{};  ///< Wall time of the whole run without output
   double element_steps_per_second{};
   double memory_bytes{};  ///< Largest so far
-  /// Bodies that touch each other or a rigid wall before anything moves, by the energy stored in that, ascending.
+  /// Bodies that touch each other before anything moves, by the energy stored in that, ascending.
   std::vector<Index> touching;
   cluster::EpochReport last;  ///< Of the last epoch
 };

@@ -51,7 +51,8 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
     }
     const IndexRange border = patches.body_border[at(index)];
     if (body.wall != no_index) {
-      // Neither a patch nor a border: its node waits for the forces of all others.
+      // Neither a patch nor a border: its node waits for the forces of all others, as held ones do.
+      held_ = true;
       own_walls_.push_back(body.wall);
       pieces_.push_back({index, no_index, patches.border_node.data(), border});
       continue;

@@ -80,18 +80,20 @@ void IslandSolver::push_wall(const Step& step, Index body, std::size_t piece) {
 /// Nodes on a wall with mass swing against it together: the bound of omega^2 grows by the worst of these walls.
 void IslandSolver::join_by_walls(const Step& step) {
   const std::size_t walls = step.model.walls.size();
-  double joined = barrier_frequency2_;
+  const double nodes2 = barrier_frequency2_;
   for (const Index w : own_walls_) {
     WallTouch sum;
     for (std::size_t piece = 0; piece < pieces_.size(); ++piece) {
       sum.stiffness += touches_[piece * walls + at(w)].stiffness;
       sum.damping += touches_[piece * walls + at(w)].damping;
     }
-    const double frequency2 = joined_frequency2(barrier_frequency2_, sum, step.model.walls[at(w)].inverse_mass);
-    barrier_wall_ = frequency2 > joined ? w : barrier_wall_;
-    joined = maximum(joined, frequency2);
+    const double frequency2 = joined_frequency2(nodes2, sum, step.model.walls[at(w)].inverse_mass);
+    if (frequency2 > barrier_frequency2_) {
+      barrier_frequency2_ = frequency2;
+      // Where the wall's mass has less than half of it, the wall of the worst node is to be named.
+      barrier_wall_ = frequency2 > 2.0 * nodes2 ? w : barrier_wall_;
+    }
   }
-  barrier_frequency2_ = joined;
 }
 
 }  // namespace fexp::solve

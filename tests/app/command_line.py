@@ -154,13 +154,13 @@ class Check(program.Case):
         summary = self.run_deck(cells=16)
         self.assertAlmostEqual(report["expected_steps"] / summary["steps"], 1.0, delta=0.1)
 
-    def test_warns_of_bodies_that_touch_at_the_start(self):
+    def test_warns_of_bodies_that_are_inside_a_wall_at_the_start(self):
         path = self.folder / self.write_deck()
-        self.assertNotIn("penetrate", self.fexp("check", "deck.toml").stdout)
+        self.assertNotIn("inside", self.fexp("check", "deck.toml").stdout)
         path.write_text(path.read_text(encoding="utf-8").replace("translate = [0.0, 0.0, 11.0]",
                                                                   "translate = [0.0, 0.0, 10.2]"), encoding="utf-8")
         result = self.fexp("check", "deck.toml")
-        self.assertIn('penetrate something at the start, the first is "ball"', result.stdout)
+        self.assertIn('body "ball": inside rigid wall "floor"', result.stdout)
 
     def test_a_trial_that_stops_says_why(self):
         result = self.fexp("check", self.write_deck(energy_drift_limit=1e-14))

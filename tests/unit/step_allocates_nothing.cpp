@@ -66,6 +66,9 @@ model::Model busy_plate() {
   d.gravity.push_back({{0.0, 0.0, -9.81}, "ramp", {}});
   d.pressure.push_back({{"plate"}, "", 10.0, "ramp", {}});
   d.planes.push_back({{"floor"}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}});
+  d.planes.push_back({{"lid"}, {0.0, 0.0, 3.005}, {0.0, 0.0, -1.0}});
+  d.planes.back().mass = 2.0;
+  d.planes.back().initial_velocity = {0.0, 0.0, -1.0};
   test::add_box_set(d, "left", {0.0, 0.0, -1.0}, {0.0, 1.0, 1.0});
   test::add_box_set(d, "right", {1.0, 0.0, -1.0}, {1.0, 1.0, 1.0});
   test::add_box_set(d, "middle", {0.4, 0.4, -1.0}, {0.6, 0.6, 1.0});

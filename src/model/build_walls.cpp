@@ -94,18 +94,23 @@ std::vector<Vec3d> held_directions(const RigidWall& wall, WallShape shape, const
   if (wall.guide) {
     return across(*wall.guide);
   }
-  std::vector<Vec3d> held;
-  if (wall.free) {
-    const std::array<Vec3d, 3> axes = unit_axes({});
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      if (std::find(wall.free->begin(), wall.free->end(), direction_names[axis]) == wall.free->end()) {
-        held.push_back(axes[axis]);
-      }
+  if (!wall.free) {
+    switch (shape) {
+      case WallShape::plane:
+        return across(direction);
+      case WallShape::cylinder:
+        return {(1.0 / norm(direction)) * direction};
+      case WallShape::sphere:
+        break;
     }
-  } else if (shape == WallShape::plane) {
-    held = across(direction);
-  } else if (shape == WallShape::cylinder) {
-    held = {(1.0 / norm(direction)) * direction};
+    return {};
+  }
+  std::vector<Vec3d> held;
+  const std::array<Vec3d, 3> axes = unit_axes({});
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    if (std::find(wall.free->begin(), wall.free->end(), direction_names[axis]) == wall.free->end()) {
+      held.push_back(axes[axis]);
+    }
   }
   return held;
 }

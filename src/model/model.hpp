@@ -155,25 +155,25 @@ enum class WallShape : std::uint8_t { plane, cylinder, sphere };
 /// A surface that nodes do not pass.
 struct Wall {
   std::string name;
-  WallShape shape{};
   Vec3d point{};           ///< Of a plane, of the axis of a cylinder, or the centre, at time zero [length]
   Vec3d direction{};       ///< Unit vector: normal of a plane, towards the free side, or axis of a cylinder
   double radius{};         ///< [length]
-  bool inside{};           ///< Of cylinders and spheres: nodes stay inside.
   double stiffness{-1.0};  ///< Penalty stiffness per node [force/length]; negative: that of the node
-  bool moves{};
-  PrescribedKind kind{};  ///< Velocity or displacement
-  Vec3d motion{};         ///< Times the curve [length/time] or [length]
-  Index curve{no_index};
+  Vec3d motion{};          ///< Times the curve [length/time] or [length]
   physics::DragLaw drag{};
-  Index rubbing{no_index};  ///< Its number among the walls with friction or damping; no_index where it has none
-  double inverse_mass{};    ///< [1/mass]; 0: it stands or moves as told, whatever pushes it
-  Index body{no_index};     ///< That carries it, where it has a mass
+  double inverse_mass{};  ///< [1/mass]; 0: it stands or moves as told, whatever pushes it
   /// Of a wall with mass: c^2 M/dt^2 like that of a node, in series with which it is the stiffness where none is given.
   double mass_stiffness{};
   /// Of a wall with mass: largest edge of the box of all bodies in the reference configuration, as a size to go by
   /// [length].
   double span{};
+  Index curve{no_index};
+  Index rubbing{no_index};  ///< Its number among the walls with friction or damping; no_index where it has none
+  Index body{no_index};     ///< That carries it, where it has a mass
+  WallShape shape{};
+  PrescribedKind kind{};  ///< Velocity or displacement
+  bool inside{};          ///< Of cylinders and spheres: nodes stay inside.
+  bool moves{};           ///< As told
 };
 
 struct NamedNodes {

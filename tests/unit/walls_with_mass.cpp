@@ -274,7 +274,7 @@ TEST(walls_with_mass, that_are_light_make_the_step_smaller_and_stay_stable) {
     EXPECT_LT(simulation.extremes().energy_error, 0.05) << mass;
     return simulation.extremes().smallest_dt;
   };
-  EXPECT_LT(smallest_step(0.02), 0.3 * smallest_step(1000.0));
+  EXPECT_LT(smallest_step(0.02), 0.5 * smallest_step(1000.0));
 }
 
 TEST(walls_with_mass, one_on_each_side_of_a_body_squeeze_it) {
@@ -389,7 +389,7 @@ TEST(wall_faults, name_the_wall_that_makes_the_step_collapse) {
     Description d = plate();
     RigidPlane& lid = add_plane(d, "lid", 0.0101, -1.0, mass);
     (mass > 0.0 ? lid.initial_velocity : lid.velocity) = {0.0, 0.0, -1.0};
-    lid.stiffness = mass > 0.0 ? -1.0 : 1.0e14;
+    lid.stiffness = mass > 0.0 ? 1.0e6 : 1.0e14;
     const model::Model model = test::build(d);
     cluster::Simulation simulation(model, solve::KernelChoice::automatic);
     const cluster::EpochReport report = run(simulation, 0.05);

@@ -26,7 +26,7 @@ std::string_view key_of_mass(const RigidWall& wall) {
 
 /// What a wall with mass is told fits together.
 void check_mass(const std::string& name, const RigidWall& wall, const std::vector<Vec3d>& held, ErrorList& errors) {
-  constexpr double least_part = 1.0e-9;
+  constexpr double least_part = 1.0e-6;  // Of vectors that are written with six digits
   if (wall.velocity != Vec3d{} || wall.displacement != Vec3d{}) {
     errors.add(wall.place,
                fmt::format("{} has a mass and a {}", name, wall.velocity != Vec3d{} ? "velocity" : "displacement"),

@@ -16,7 +16,7 @@
 #include "solve/walls.hpp"
 #include "support/models.hpp"
 
-namespace fexp {
+namespace fexp::walls_with_mass {
 namespace {
 
 using model::Description;
@@ -403,4 +403,4 @@ TEST(wall_faults, name_the_wall_that_makes_the_step_collapse) {
 }
 
 }  // namespace
-}  // namespace fexp
+}  // namespace fexp::walls_with_mass

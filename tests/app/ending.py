@@ -168,7 +168,7 @@ class Fault(Ending):
         text = (self.folder / name).read_text(encoding="utf-8").replace("translate = [-12.0, -3.0, 1.0]",
                                                                        "translate = [-3.0, -3.0, 0.9]")
         text = text.replace("count = [2, 1, 1]", "count = [1, 1, 1]")
-        (self.folder / name).write_text(text + "[contact]\npenalty_scale = 0.01\n", encoding="utf-8")
+        (self.folder / name).write_text(text + "[contact]\npenalty_scale = 0.01\nhardening = 0.0\n", encoding="utf-8")
         result = self.fexp("run", name, "--out", "here")
         self.assertEqual(result.returncode, 3, result.stderr)
         self.assertRegex(result.stderr, r'% of it by contact of body "ball" with body "plate\[0,0,0\]", hardest: node \d+ of body')

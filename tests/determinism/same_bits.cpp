@@ -229,6 +229,7 @@ TEST(roll_back, in_contact_ends_in_the_state_of_an_epoch_planned_shorter_from_th
     d.forces.push_back({name, {i % 2 == 0 ? 4.0e5 : -4.0e5, 0.0, 0.0}, {}, true, "jolt", {}});
   }
   d.run.energy_drift_limit = 1.0;
+  d.contact.hardening = 0.0;  // Deep contact that hardens makes the step smaller before two epochs are compared
   model::Model model = test::build(d);
   model::Model other = model;
   cluster::Simulation one(model, KernelChoice::automatic), two(other, KernelChoice::automatic);

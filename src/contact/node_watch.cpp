@@ -218,11 +218,14 @@ void NodeWatch::decide_sides(std::span<const model::ContactSide> memory) {
     }
   }
   for (Watched& w : watched_) {
-    for (const Watched& other : watched_) {
-      if (w.closer == no_index && other.closer == no_index && w.is_through(w.side) && other.is_nearer(w) &&
-          !other.is_through(other.side) && hides(other, w)) {
-        w.side = w.view.side;  // What is in front of it has not let the node through
-      }
+    if (w.closer != no_index || !w.is_through(w.side)) {
+      continue;
+    }
+    const bool hidden = std::ranges::any_of(watched_, [&](const Watched& other) {
+      return other.closer == no_index && other.is_nearer(w) && !other.is_through(other.side) && hides(other, w);
+    });
+    if (hidden) {
+      w.side = w.view.side;  // What is in front of it has not let the node through
     }
   }
   // Where a neighbour is closer, its side is what counts, and so on to the closest of all: a node that goes round a rim
@@ -317,7 +320,7 @@ void NodeWatch::leave_one_of_smooth_neighbours() {
       const bool nearer = other.is_nearer(w);
       const bool in_front = !other.is_through(other.side) && !w.is_through(w.side);
       const bool deeper = in_front && other.depth != w.depth ? other.depth > w.depth : nearer;
-      // One that has been beaten itself still beats: what is closest of all decides.
+      // One that has been beaten itself still beats: what is deepest, or closest, of all decides.
       if (w.acts && other.closer == no_index && other.element != w.element &&
           ((nearer && (hides(other, w) || both_through(other, w))) ||
            (deeper && dot(direction(other), direction(w)) > smooth_cosine && are_neighbours(other, w)))) {

@@ -31,8 +31,8 @@ constexpr int no_such_kernel = 3;
 }
 
 struct Found {
-  fexp::contact::Candidates nodes;
-  fexp::contact::EdgeCandidates edges;
+  fexp::contact::CandidateRows nodes;
+  fexp::contact::CandidateRows edges;
 };
 
 [[gnu::noinline]] void counted_search(fexp::contact::WholeSearch& search, const fexp::bench::SearchScene& scene,

@@ -70,7 +70,7 @@ void tree_queries(benchmark::State& state) {
 /// The whole search: build, queries, distances and sorted rows.
 void candidate_search(benchmark::State& state) {
   const SearchScene& scene = sphere_of(static_cast<Index>(state.range(0)));
-  contact::Candidates found;
+  contact::CandidateRows found;
   fexp::parallel::with_threads(static_cast<int>(state.range(1)), [&] {
     contact::WholeSearch search;
     const std::vector<Index> bodies{0};
@@ -86,7 +86,7 @@ void candidate_search(benchmark::State& state) {
   state.counters["triangles"] = elements;
   state.counters["searches_per_second"] = benchmark::Counter(1.0, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["elements_per_second"] = benchmark::Counter(elements, benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["candidates_per_element"] = static_cast<double>(found.element.size()) / elements;
+  state.counters["candidates_per_element"] = static_cast<double>(found.partner.size()) / elements;
 }
 
 void sizes(benchmark::internal::Benchmark* b) {

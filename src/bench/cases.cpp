@@ -220,7 +220,7 @@ SearchRow measure_search(const SearchCase& search_case, int threads, double seco
     contact::BoxTree tree;
     const Rate builds = rate_of_calls(seconds, [&] { tree.build(scene.block_boxes); });
     contact::WholeSearch search;
-    contact::Candidates found;
+    contact::CandidateRows found;
     const std::vector<Index> bodies{0};
     const auto motion = model::initial_state(sphere).motion;
     search.assign(sphere, bodies);

@@ -101,10 +101,10 @@ void CandidateSearch::try_block(const model::Model& model, const BlockPairs& pai
 
 /// Sorts the pairs by node; within a node they already ascend, because the blocks do.
 void CandidateSearch::list(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> remembered,
-                           Candidates& found) {
+                           CandidateRows& found) {
   row_size_.assign(nodes_.size(), 0);
   for_each_found(pairs, wear, found_, [&](const Pair& pair, double) { ++row_size_[at(pair.local)]; });
-  found.node.clear();
+  found.owner.clear();
   found.start.assign(1, 0);
   std::size_t next = 0;
   for (std::size_t local = 0; local < nodes_.size(); ++local) {
@@ -115,19 +115,23 @@ void CandidateSearch::list(const BlockPairs& pairs, const BlockWear& wear, std::
     if (row_size_[local] == 0 && !kept) {
       continue;
     }
-    found.node.push_back(nodes_[local]);
+    found.owner.push_back(nodes_[local]);
     found.start.push_back(found.start.back() + row_size_[local]);
     // From now on the row of this node.
-    row_size_[local] = static_cast<Index>(found.node.size()) - 1;
+    row_size_[local] = static_cast<Index>(found.owner.size()) - 1;
   }
-  found.element.resize(at(found.start.back()));
-  found.slack.assign(found.node.size(), HUGE_VAL);
+  found.partner.resize(at(found.start.back()));
+  found.due.resize(at(found.start.back()));
+  found.slack.assign(found.owner.size(), HUGE_VAL);
   std::vector<Index> place(found.start.begin(), found.start.end() - 1);
   for_each_found(pairs, wear, found_, [&](const Pair& pair, double slack) {
     const std::size_t row = at(row_size_[at(pair.local)]);
-    found.element[at(place[row]++)] = pair.element;
+    const std::size_t i = at(place[row]++);
+    found.partner[i] = pair.element;
+    found.due[i] = slack;
     found.slack[row] = std::min(found.slack[row], slack);
   });
+  found.row_due = found.slack;
 }
 
 }  // namespace fexp::contact

@@ -6,23 +6,15 @@
 
 #include "contact/block_pairs.hpp"
 #include "contact/block_wear.hpp"
+#include "contact/candidate_rows.hpp"
 #include "contact/near_pairs.hpp"
 #include "contact/surface.hpp"
 
 namespace fexp::contact {
 
-/// Pairs of nodes and elements that may come within watch distance while no two nodes of the island have moved by more
-/// than the skin relative to each other: compressed rows over nodes, everything ascending.
-struct Candidates {
-  std::vector<Index> node;     // [rows]
-  std::vector<Index> start;    // [rows + 1]
-  std::vector<Index> element;  // [candidates]
-  /// Relative motion below which no pair of the row comes within watch distance [length], shape [rows].
-  std::vector<double> slack;
-};
-
-/// Finds candidates: every node belongs to the first block of elements that has it, and every block is tried, its
-/// elements side by side, with the nodes of the blocks that it may touch. Pairs are taken by their distance and sorted.
+/// Finds candidates of nodes: every node belongs to the first block of elements that has it, and every block is tried,
+/// its elements side by side, with the nodes of the blocks that it may touch. Pairs are taken by their distance and
+/// sorted.
 class CandidateSearch {
  public:
   /// Takes up the bodies to search among, ascending, barriers included.
@@ -34,7 +26,7 @@ class CandidateSearch {
 
   /// All pairs that searches have found of blocks that are partners, with what is left of their slack. `remembered`:
   /// nodes (ascending, repeats allowed) that get a row in any case.
-  void list(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> remembered, Candidates& found);
+  void list(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> remembered, CandidateRows& found);
 
   [[nodiscard]] Index node_count() const noexcept { return static_cast<Index>(nodes_.size()); }
   [[nodiscard]] std::span<const Index> nodes() const noexcept { return nodes_; }

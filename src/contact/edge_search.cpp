@@ -95,15 +95,16 @@ void EdgeSearch::try_block(const BlockPairs& pairs, const BlockWear& wear, doubl
 }
 
 void EdgeSearch::list(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> remembered,
-                      EdgeCandidates& found) {
+                      CandidateRows& found) {
   sorted_.clear();
   for_each_found(pairs, wear, found_, [&](const Pair& pair, double slack) {
     sorted_.push_back({pair.first, pair.second, pair.partner, slack});
   });
   std::sort(sorted_.begin(), sorted_.end());
-  found.first.clear();
+  found.owner.clear();
   found.start.assign(1, 0);
-  found.second.clear();
+  found.partner.clear();
+  found.due.clear();
   found.slack.clear();
   auto pair = sorted_.cbegin();
   auto kept = remembered.begin();
@@ -112,16 +113,18 @@ void EdgeSearch::list(const BlockPairs& pairs, const BlockWear& wear, std::span<
         kept == remembered.end() || (pair != sorted_.cend() && pair->first <= *kept) ? pair->first : *kept;
     double slack = HUGE_VAL;
     for (; pair != sorted_.cend() && pair->first == first; ++pair) {
-      found.second.push_back(pair->second);
+      found.partner.push_back(pair->second);
+      found.due.push_back(pair->slack);
       slack = std::min(slack, pair->slack);
     }
     while (kept != remembered.end() && *kept == first) {
       ++kept;
     }
-    found.first.push_back(first);
-    found.start.push_back(static_cast<Index>(found.second.size()));
+    found.owner.push_back(first);
+    found.start.push_back(static_cast<Index>(found.partner.size()));
     found.slack.push_back(slack);
   }
+  found.row_due = found.slack;
 }
 
 }  // namespace fexp::contact

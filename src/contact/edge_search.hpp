@@ -6,20 +6,11 @@
 
 #include "contact/block_pairs.hpp"
 #include "contact/block_wear.hpp"
+#include "contact/candidate_rows.hpp"
 #include "contact/near_edges.hpp"
 #include "contact/surface.hpp"
 
 namespace fexp::contact {
-
-/// Pairs of edges that may come within watch distance while no two nodes of the island have moved by more than the skin
-/// relative to each other: compressed rows over first edges, everything ascending.
-struct EdgeCandidates {
-  std::vector<Index> first;   // [rows]
-  std::vector<Index> start;   // [rows + 1]
-  std::vector<Index> second;  // [candidates]
-  /// Relative motion below which no pair of the row comes within watch distance [length], shape [rows].
-  std::vector<double> slack;
-};
 
 /// Finds pairs of edges that are near each other: every edge belongs to the block of the lower of its elements, and the
 /// edges of blocks that may touch each other are tried with each other.
@@ -31,7 +22,7 @@ class EdgeSearch {
   /// As those of CandidateSearch; what is remembered are first edges.
   void search(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> blocks, const Positions& x,
               double skin);
-  void list(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> remembered, EdgeCandidates& found);
+  void list(const BlockPairs& pairs, const BlockWear& wear, std::span<const Index> remembered, CandidateRows& found);
 
   [[nodiscard]] std::span<const NearEdge> edges_of(Index block) const;
 

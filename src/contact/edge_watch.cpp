@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/near_pairs.hpp"
+
 namespace fexp::contact {
 
 namespace {
@@ -34,6 +36,9 @@ EdgeWatch::Pair EdgeWatch::pair_at(const Positions& x, Index first, Index second
   p.first = first;
   p.second = second;
   p.node = {a[0], a[1], b[0], b[1]};
+  const double first_half = edge_half_thickness(model_, a), second_half = edge_half_thickness(model_, b);
+  p.thickest = first_half + second_half;
+  p.reach = (first_half + edge_margin(model_, a)) + (second_half + edge_margin(model_, b));
   p.lines = physics::closest_on_lines(x(a[0]), x(a[1]), x(b[0]), x(b[1]));
   constexpr double least = physics::feature_tolerance, most = 1.0 - physics::feature_tolerance;
   p.inside = p.lines.sine2 > physics::parallel_sine2 && p.lines.first > least && p.lines.first < most &&
@@ -105,9 +110,8 @@ double EdgeWatch::most_distance(const Pair& p) const {
   const std::vector<Vec3d>& x = model_.reference_position;
   const Vec3d &a0 = x[at(p.node[0])], &a1 = x[at(p.node[1])], &b0 = x[at(p.node[2])], &b1 = x[at(p.node[3])];
   const Vec3d from = b0 - a0;
-  const double thickest = reach_of(p);
-  const double reach = thickest + norm(a1 - a0) + norm(b1 - b0);
-  return dot(from, from) > reach * reach ? thickest : std::sqrt(physics::edge_distance2(a0, a1, b0, b1));
+  const double reach = p.reach + norm(a1 - a0) + norm(b1 - b0);
+  return dot(from, from) > reach * reach ? p.reach : std::sqrt(physics::edge_distance2(a0, a1, b0, b1));
 }
 
 EdgeWatch::Place EdgeWatch::place_at(const Pair& p, double first, double second, double most_distance) const {
@@ -134,57 +138,73 @@ bool EdgeWatch::are_joined(const Pair& p) const {
   return !model_.ties.empty() && (joined(0, 2) || joined(0, 3) || joined(1, 2) || joined(1, 3));
 }
 
-/// Watch distance [length].
-double EdgeWatch::reach_of(const Pair& p) const { return edge_reach(model_, p.first) + edge_reach(model_, p.second); }
-
 const model::ContactLaw& EdgeWatch::law_of(const Pair& p) const {
   return model_.contact_laws.of(model_.node_body[at(p.node[0])], model_.node_body[at(p.node[2])]);
 }
 
-void EdgeWatch::look(Index first, std::span<const Index> second, std::span<const model::EdgeSide> memory,
+/// How far the ends must move relative to each other before edges that are not near can be [length]. What costs least
+/// is enough where it says that they are apart.
+double EdgeWatch::motion_before(const Pair& p) const {
+  const double reach = p.reach * (1.0 + distance_rounding);
+  const auto beyond_reach = [reach](double distance) { return distance * (1.0 - distance_rounding) - reach; };
+  if (p.lines.sine2 > physics::parallel_sine2 && beyond_reach(std::abs(p.lines.gap)) > 0.0) {
+    return beyond_reach(std::abs(p.lines.gap));
+  }
+  const Vec3d a0 = now_(p.node[0]), a1 = now_(p.node[1]), b0 = now_(p.node[2]), b1 = now_(p.node[3]);
+  const double apart = beyond_reach(std::sqrt(physics::edge_distance2(a0, a1, b0, b1, p.lines)));
+  return apart > 0.0 ? apart
+                     : (1.0 - distance_rounding) *
+                           physics::motion_before_crossing(a0, a1, b0, b1, p.lines, physics::parallel_sine2);
+}
+
+void EdgeWatch::look(Index first, CandidateRow candidates, std::span<const model::EdgeSide> memory,
                      std::vector<model::EdgeSide>& remembered, std::vector<ActiveEdges>& active) const {
   if (!is_there(first)) {
     return;
   }
   // As they were left: when nothing has moved since, pairs push as they did.
-  auto candidate = still_ && !memory.empty() ? second.end() : second.begin();
+  std::size_t i = still_ && !memory.empty() ? candidates.size() : candidates.due_from(0);
   auto known = memory.begin();
-  while (known != memory.end() || candidate != second.end()) {
-    const bool is_known = known != memory.end() && (candidate == second.end() || known->second <= *candidate);
-    const Index next = is_known ? known->second : *candidate;
+  while (known != memory.end() || i != candidates.size()) {
+    const bool is_known = known != memory.end() && (i == candidates.size() || known->second <= candidates.partner(i));
+    const Index next = is_known ? known->second : candidates.partner(i);
+    const bool is_candidate = i != candidates.size() && candidates.partner(i) == next;
     if (is_there(next)) {
-      watch(first, next, is_known ? &*known : nullptr, remembered, active);
+      const Pair pair = pair_at(now_, first, next);
+      watch(pair, is_known ? &*known : nullptr, remembered, active);
+      if (is_candidate && !pair.is_near()) {
+        candidates.leave_alone(i, motion_before(pair));
+      }
     }
-    if (candidate != second.end() && *candidate == next) {
-      ++candidate;
-    }
-    if (is_known) {
-      ++known;
-    }
+    i = is_candidate ? candidates.due_from(i + 1) : i;
+    known += is_known ? 1 : 0;
   }
 }
 
-void EdgeWatch::watch(Index first, Index second, const model::EdgeSide* known, std::vector<model::EdgeSide>& remembered,
+void EdgeWatch::watch(const Pair& p, const model::EdgeSide* known, std::vector<model::EdgeSide>& remembered,
                       std::vector<ActiveEdges>& active) const {
-  Pair p = pair_at(now_, first, second);
-  const bool near = p.inside && std::abs(p.lines.gap) < reach_of(p);
+  const bool near = p.is_near();
   const Vec3d drag_before = known != nullptr ? known->drag : Vec3d{};
   if (near) {
-    remembered.push_back({first, second, static_cast<std::int8_t>(side_of(p, known)), {}});
+    remembered.push_back({p.first, p.second, static_cast<std::int8_t>(side_of(p, known)), {}});
     push(remembered.back(), p, drag_before, active);
   }
-  // What a pair had stored that pushes no more is lost.
   if (drag_before != Vec3d{} && !still_ && (!near || remembered.back().drag == Vec3d{})) {
-    p.lines.first = limited(p.lines.first);
-    p.lines.second = limited(p.lines.second);
-    ActiveEdges parted;
-    parted.first = first;
-    parted.second = second;
-    const Vec3d normal = p.lines.sine2 > 0.0 ? (1.0 / norm(p.lines.normal)) * p.lines.normal : Vec3d{};
-    const double stiff = pair_stiffness(law_of(p), place_at(p, p.lines.first, p.lines.second, HUGE_VAL).compliance);
-    parted.dissipated = physics::stored_energy(drag_before, normal, stiff) - 0.5 * dot(drag_before, way_of(p));
-    active.push_back(parted);
+    part(p, drag_before, active);
   }
+}
+
+/// What a pair had stored that pushes no more is lost.
+void EdgeWatch::part(Pair p, const Vec3d& drag_before, std::vector<ActiveEdges>& active) const {
+  p.lines.first = limited(p.lines.first);
+  p.lines.second = limited(p.lines.second);
+  ActiveEdges parted;
+  parted.first = p.first;
+  parted.second = p.second;
+  const Vec3d normal = p.lines.sine2 > 0.0 ? (1.0 / norm(p.lines.normal)) * p.lines.normal : Vec3d{};
+  const double stiff = pair_stiffness(law_of(p), place_at(p, p.lines.first, p.lines.second, HUGE_VAL).compliance);
+  parted.dissipated = physics::stored_energy(drag_before, normal, stiff) - 0.5 * dot(drag_before, way_of(p));
+  active.push_back(parted);
 }
 
 /// Depth of edges at a height over each other, along the normal in which they belong, or of an end that is `distance`
@@ -203,9 +223,13 @@ EdgeWatch::Depth EdgeWatch::depth_at(double contact_distance, double distance, d
 
 void EdgeWatch::push(model::EdgeSide& known, const Pair& p, const Vec3d& drag_before,
                      std::vector<ActiveEdges>& active) const {
-  const double most = most_distance(p), height = known.side * p.lines.gap, reach = reach_of(p);
+  const double height = known.side * p.lines.gap;
+  if (height >= p.thickest * (1.0 + distance_rounding)) {
+    return;
+  }
+  const double most = most_distance(p);
   const Place place = place_at(p, p.lines.first, p.lines.second, most);
-  const Depth depth = depth_at(place.distance, std::abs(height), height, reach);
+  const Depth depth = depth_at(place.distance, std::abs(height), height, p.reach);
   if (!(depth.value > 0.0) || are_joined(p)) {
     return;
   }
@@ -260,7 +284,7 @@ void EdgeWatch::push(model::EdgeSide& known, const Pair& p, const Vec3d& drag_be
 /// `normal`: times the sharpness.
 void EdgeWatch::leave_to_ends(const Pair& p, const model::ContactLaw& law, double most_distance, double height,
                               const Vec3d& normal, ActiveEdges& push) const {
-  const double part = norm(normal), reach = reach_of(p);
+  const double part = norm(normal), reach = p.reach;
   double most = 0.0;
   Vec3d at_end, at_crossing;
   Place at_most;

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/node_watch.hpp"
+#include "contact/candidate_rows.hpp"
 #include "contact/surface.hpp"
 #include "model/branches.hpp"
 #include "physics/closest_lines.hpp"
@@ -48,9 +48,9 @@ class EdgeWatch {
   EdgeWatch(const model::Model& model, Positions now, Positions before)
       : model_(model), now_(now), before_(before), still_(before.back == now.back) {}
 
-  /// Looks at an edge, which has candidates `second` and a memory (both ascending). Appends what is remembered now and
-  /// the pairs with a force.
-  void look(Index first, std::span<const Index> second, std::span<const model::EdgeSide> memory,
+  /// Looks at an edge, which has candidates and a memory (both ascending). Appends what is remembered now and the pairs
+  /// with a force.
+  void look(Index first, CandidateRow candidates, std::span<const model::EdgeSide> memory,
             std::vector<model::EdgeSide>& remembered, std::vector<ActiveEdges>& active) const;
 
  private:
@@ -73,8 +73,11 @@ class EdgeWatch {
     Index first{};
     Index second{};
     std::array<Index, 4> node{};  ///< Ends of the first and of the second edge
+    double thickest{};            ///< Largest half thicknesses of both [length]
+    double reach{};               ///< Watch distance [length]
     physics::ClosestOnLines lines;
     bool inside{};  ///< The edges cross within both, at an angle
+    [[nodiscard]] bool is_near() const noexcept { return inside && std::abs(lines.gap) < reach; }
     [[nodiscard]] int side() const noexcept { return lines.gap < 0.0 ? -1 : 1; }
   };
 
@@ -88,11 +91,12 @@ class EdgeWatch {
   [[nodiscard]] double most_distance(const Pair& pair) const;
   [[nodiscard]] Place place_at(const Pair& pair, double first, double second, double most_distance) const;
   [[nodiscard]] bool are_joined(const Pair& pair) const;
-  [[nodiscard]] double reach_of(const Pair& pair) const;
+  [[nodiscard]] double motion_before(const Pair& pair) const;
   [[nodiscard]] const model::ContactLaw& law_of(const Pair& pair) const;
   [[nodiscard]] static Depth depth_at(double contact_distance, double distance, double height, double reach);
-  void watch(Index first, Index second, const model::EdgeSide* known, std::vector<model::EdgeSide>& remembered,
+  void watch(const Pair& pair, const model::EdgeSide* known, std::vector<model::EdgeSide>& remembered,
              std::vector<ActiveEdges>& active) const;
+  void part(Pair pair, const Vec3d& drag_before, std::vector<ActiveEdges>& active) const;
   void push(model::EdgeSide& known, const Pair& pair, const Vec3d& drag_before, std::vector<ActiveEdges>& active) const;
   void leave_to_ends(const Pair& pair, const model::ContactLaw& law, double most_distance, double height,
                      const Vec3d& normal, ActiveEdges& push) const;
@@ -105,12 +109,22 @@ class EdgeWatch {
   bool still_{};
 };
 
-/// Part of a pair's watch distance that an edge brings: its half thickness, and half of what it may travel in a step.
+/// Larger half thickness of an edge's ends [length].
+[[nodiscard]] inline double edge_half_thickness(const model::Model& model, std::array<Index, 2> ends) noexcept {
+  const double a = model.half_thickness[at(ends[0])], b = model.half_thickness[at(ends[1])];
+  return a > b ? a : b;
+}
+
+/// Half of what an edge may travel in a step [length].
+[[nodiscard]] inline double edge_margin(const model::Model& model, std::array<Index, 2> ends) noexcept {
+  const double p = model.node_size[at(ends[0])], q = model.node_size[at(ends[1])];
+  return 0.5 * model::watch_margin(p < q ? p : q);
+}
+
+/// Part of a pair's watch distance that an edge brings [length].
 [[nodiscard]] inline double edge_reach(const model::Model& model, Index edge) noexcept {
-  const std::array<Index, 2> n = ends_of(model, edge);
-  const double a = model.half_thickness[at(n[0])], b = model.half_thickness[at(n[1])];
-  const double p = model.node_size[at(n[0])], q = model.node_size[at(n[1])];
-  return (a > b ? a : b) + 0.5 * model::watch_margin(p < q ? p : q);
+  const std::array<Index, 2> ends = ends_of(model, edge);
+  return edge_half_thickness(model, ends) + edge_margin(model, ends);
 }
 
 }  // namespace fexp::contact

@@ -144,20 +144,20 @@ std::vector<Result> gathered(Index count, const Work& work) {
 }
 
 std::vector<InitialPenetration> Finder::near_elements() {
-  Candidates c;
+  CandidateRows c;
   search_.find_nodes(model_, positions(), 0.0, {}, c);
-  return gathered<InitialPenetration>(static_cast<Index>(c.node.size()), [&](Index row, auto& results) {
+  return gathered<InitialPenetration>(static_cast<Index>(c.owner.size()), [&](Index row, auto& results) {
     const std::size_t r = at(row);
-    near_elements(c.node[r], std::span(c.element).subspan(at(c.start[r]), at(c.start[r + 1] - c.start[r])), results);
+    near_elements(c.owner[r], std::span(c.partner).subspan(at(c.start[r]), at(c.start[r + 1] - c.start[r])), results);
   });
 }
 
 std::vector<InitialPenetration> Finder::near_edges() {
-  EdgeCandidates c;
+  CandidateRows c;
   search_.find_edges(positions(), 0.0, {}, c);
-  return gathered<InitialPenetration>(static_cast<Index>(c.first.size()), [&](Index row, auto& results) {
+  return gathered<InitialPenetration>(static_cast<Index>(c.owner.size()), [&](Index row, auto& results) {
     const std::size_t r = at(row);
-    near_edges(c.first[r], std::span(c.second).subspan(at(c.start[r]), at(c.start[r + 1] - c.start[r])), results);
+    near_edges(c.owner[r], std::span(c.partner).subspan(at(c.start[r]), at(c.start[r + 1] - c.start[r])), results);
   });
 }
 

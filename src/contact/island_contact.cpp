@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "parallel/parallel.hpp"
-
 namespace fexp::contact {
 
 namespace {
@@ -18,11 +16,14 @@ constexpr double margin_part = 1.0;
 constexpr double worn_part = 0.8;
 /// By how much more than its velocity says a step moves a node, as a part of its coordinates.
 constexpr double rounding = 1.0e-15;
-constexpr Index rows_per_piece = 64;
-constexpr Index piece_grain = 4;
 
-bool by_pair(const model::ContactSide& a, const model::ContactSide& b) noexcept {
-  return a.node != b.node ? a.node < b.node : a.element < b.element;
+template <class Side>
+std::vector<Side> all_of(const std::vector<std::vector<Side>>& sides, const std::vector<Index>& bodies) {
+  std::vector<Side> all;
+  for (const Index body : bodies) {
+    all.insert(all.end(), sides[at(body)].begin(), sides[at(body)].end());
+  }
+  return all;
 }
 
 Positions positions(const model::Model& model, const model::State& state, double back, bool still) noexcept {
@@ -39,8 +40,8 @@ Index IslandContact::owner(const model::Model& model, Index node, Index element)
 void IslandContact::assign(const model::Model& model, std::span<const Index> bodies, std::span<const Index> barriers,
                            const model::State& state) {
   bodies_.assign(bodies.begin(), bodies.end());
-  pieces_.clear();
-  candidates_ = {};
+  nodes_.assign({});
+  edges_.assign({});
   report_ = {};
   searched_ = false;
   books_.assign(state, bodies);
@@ -54,30 +55,19 @@ void IslandContact::assign(const model::Model& model, std::span<const Index> bod
   all.insert(all.end(), barriers.begin(), barriers.end());
   std::sort(all.begin(), all.end());
   blocks_.assign(model, all);
-  search_.assign(model, all);
+  node_search_.assign(model, all);
   double size = 0.0;
-  for (const Index n : search_.nodes()) {
+  for (const Index n : node_search_.nodes()) {
     size += model.node_size[at(n)];
   }
-  size /= static_cast<double>(search_.node_count());
+  size /= static_cast<double>(node_search_.node_count());
   skin_ = skin_part * size;
   margin_ = margin_part * size;
-  Piece& piece = pieces_.emplace_back();
-  for (const Index body : bodies_) {
-    piece.memory.insert(piece.memory.end(), state.sides[at(body)].begin(), state.sides[at(body)].end());
-  }
-  std::sort(piece.memory.begin(), piece.memory.end(), by_pair);
+  nodes_.assign(all_of(state.sides, bodies_));
   if (with_edges_) {
-    edges_.assign(model, bodies, all, state);
+    edge_search_.assign(model, all);
+    edges_.assign(all_of(state.edge_sides, bodies_));
   }
-}
-
-std::vector<model::ContactSide> IslandContact::all_sides() const {
-  std::vector<model::ContactSide> sides;
-  for (const Piece& piece : pieces_) {
-    sides.insert(sides.end(), piece.memory.begin(), piece.memory.end());
-  }
-  return sides;
 }
 
 void IslandContact::store_sides(const model::Model& model, model::State& state) const {
@@ -85,10 +75,8 @@ void IslandContact::store_sides(const model::Model& model, model::State& state) 
     state.sides[at(body)].clear();
     state.edge_sides[at(body)].clear();
   }
-  for (const Piece& piece : pieces_) {
-    for (const model::ContactSide& side : piece.memory) {
-      state.sides[at(owner(model, side.node, side.element))].push_back(side);
-    }
+  for (const model::ContactSide& side : nodes_.all_sides()) {
+    state.sides[at(owner(model, side.node, side.element))].push_back(side);
   }
   if (with_edges_) {
     for (const model::EdgeSide& side : edges_.all_sides()) {
@@ -101,7 +89,9 @@ void IslandContact::advance(const model::Model& model, const model::State& state
   if (!enabled_ || !searched_) {
     return;
   }
-  way_ += 2.0 * (largest_way + rounded_way_);
+  const double way = 2.0 * (largest_way + rounded_way_);
+  way_ += way;
+  travelled_ += way;
   if (way_ > most_way_) {
     search_worn(model, positions(model, state, 0.0, false));
   }
@@ -133,60 +123,21 @@ void IslandContact::search(const model::Model& model, const Positions& x) {
   if (due.empty()) {
     return;
   }
-  const std::vector<model::ContactSide> memory = all_sides();
-  std::vector<Index> remembered;
-  remembered.reserve(memory.size());
-  for (const model::ContactSide& side : memory) {
-    remembered.push_back(side.node);
-  }
-  search_.search(model, blocks_, wear_, due, x, skin_);
-  search_.list(blocks_, wear_, remembered, candidates_);
-  cut_into_pieces(memory);
+  node_search_.search(model, blocks_, wear_, due, x, skin_);
+  nodes_.renew([&](std::span<const Index> remembered, CandidateRows& found) {
+    node_search_.list(blocks_, wear_, remembered, found);
+  });
   moved_ = 0.0;
+  travelled_ = 0.0;
   ++report_.searches;
-  report_.candidates = static_cast<Index>(candidates_.element.size());
+  report_.candidates = nodes_.candidate_count();
   if (with_edges_) {
-    edges_.search(blocks_, wear_, due, x, skin_);
-    edges_.list(blocks_, wear_);
+    edge_search_.search(blocks_, wear_, due, x, skin_);
+    edges_.renew([&](std::span<const Index> remembered, CandidateRows& found) {
+      edge_search_.list(blocks_, wear_, remembered, found);
+    });
     report_.candidates += edges_.candidate_count();
   }
-}
-
-void IslandContact::cut_into_pieces(const std::vector<model::ContactSide>& memory) {
-  const auto rows = static_cast<Index>(candidates_.node.size());
-  pieces_.resize(at((rows + rows_per_piece - 1) / rows_per_piece));
-  auto next = memory.begin();
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    Piece& piece = pieces_[i];
-    piece.first_row = static_cast<Index>(i) * rows_per_piece;
-    piece.last_row = std::min(piece.first_row + rows_per_piece, rows);
-    const Index last_node = candidates_.node[at(piece.last_row - 1)];
-    const auto end = std::find_if(next, memory.end(), [&](const model::ContactSide& s) { return s.node > last_node; });
-    piece.memory.assign(next, end);
-    next = end;
-  }
-}
-
-void IslandContact::look(const model::Model& model, const Positions& now, const Positions& before, Piece& piece) const {
-  NodeWatch watch(model, now, before);
-  piece.active.clear();
-  piece.next_memory.clear();
-  auto known = piece.memory.cbegin();
-  for (Index row = piece.first_row; row < piece.last_row; ++row) {
-    const Index node = candidates_.node[at(row)];
-    auto end = known;
-    while (end != piece.memory.cend() && end->node == node) {
-      ++end;
-    }
-    // Nothing remembered and nothing near enough yet: most rows on most steps.
-    if (known != end || candidates_.slack[at(row)] <= moved_ + way_) {
-      const std::span<const Index> elements(candidates_.element.data() + candidates_.start[at(row)],
-                                            candidates_.element.data() + candidates_.start[at(row) + 1]);
-      watch.look(node, elements, {known, end}, piece.next_memory, piece.active);
-    }
-    known = end;
-  }
-  piece.memory.swap(piece.next_memory);
 }
 
 void IslandContact::look(const model::Model& model, const Positions& now, const Positions& before) {
@@ -194,10 +145,9 @@ void IslandContact::look(const model::Model& model, const Positions& now, const 
     search_all(model, now);
   }
   if (with_edges_) {
-    edges_.look(model, now, before, moved_ + way_);
+    edges_.look(moved_ + way_, travelled_, [&] { return EdgeWatch(model, now, before); });
   }
-  parallel::for_each(static_cast<Index>(pieces_.size()), piece_grain,
-                     [&](Index i) { look(model, now, before, pieces_[at(i)]); });
+  nodes_.look(moved_ + way_, travelled_, [&] { return NodeWatch(model, now, before); });
 }
 
 void IslandContact::recall(const model::Model& model, const model::State& state) {
@@ -220,11 +170,7 @@ ContactReport IslandContact::evaluate(const model::Model& model, const model::St
   report_.deepest = 0.0;
   report_.deepest_node = no_index;
   report_.deepest_element = no_index;
-  for (const Piece& piece : pieces_) {
-    for (const ActivePair& pair : piece.active) {
-      add(model, now, pair, nodes, bodies);
-    }
-  }
+  nodes_.for_each_active([&](const ActivePair& pair) { add(model, now, pair, nodes, bodies); });
   if (with_edges_) {
     edges_.for_each_active([&](const ActiveEdges& pair) { add(model, now, pair, nodes, bodies); });
   }
@@ -247,17 +193,15 @@ void IslandContact::find_stiffest(const model::Model& model, const NodeContact& 
   };
   report_.stiffest_node = no_index;
   report_.stiffest_element = no_index;
-  for (const Piece& piece : pieces_) {
-    for (const ActivePair& pair : piece.active) {
-      const auto& t = model.triangle[at(pair.element)];
-      // All are looked at, whichever exceeds.
-      const std::array<bool, 4> more{exceeds(pair.node), exceeds(t[0]), exceeds(t[1]), exceeds(t[2])};
-      if (more[0] || more[1] || more[2] || more[3]) {
-        report_.stiffest_node = pair.node;
-        report_.stiffest_element = pair.element;
-      }
+  nodes_.for_each_active([&](const ActivePair& pair) {
+    const auto& t = model.triangle[at(pair.element)];
+    // All are looked at, whichever exceeds.
+    const std::array<bool, 4> more{exceeds(pair.node), exceeds(t[0]), exceeds(t[1]), exceeds(t[2])};
+    if (more[0] || more[1] || more[2] || more[3]) {
+      report_.stiffest_node = pair.node;
+      report_.stiffest_element = pair.element;
     }
-  }
+  });
   if (with_edges_) {
     edges_.for_each_active([&](const ActiveEdges& pair) {
       const std::array<Index, 2> first = ends_of(model, pair.first), second = ends_of(model, pair.second);
@@ -286,15 +230,13 @@ void IslandContact::book_half_work(const model::Model& model, const model::State
       bodies[b].work += half_dt * on_b;
     }
   };
-  for (const Piece& piece : pieces_) {
-    for (const ActivePair& pair : piece.active) {
-      const auto& t = model.triangle[at(pair.element)];
-      const Vec3d surface = pair.weight[0] * motion[t[0]].velocity + pair.weight[1] * motion[t[1]].velocity +
-                            pair.weight[2] * motion[t[2]].velocity;
-      book(model.node_body[at(pair.node)], body_of_element(model, pair.element), power(pair.force, pair.node),
-           -dot(pair.force, surface));
-    }
-  }
+  nodes_.for_each_active([&](const ActivePair& pair) {
+    const auto& t = model.triangle[at(pair.element)];
+    const Vec3d surface = pair.weight[0] * motion[t[0]].velocity + pair.weight[1] * motion[t[1]].velocity +
+                          pair.weight[2] * motion[t[2]].velocity;
+    book(model.node_body[at(pair.node)], body_of_element(model, pair.element), power(pair.force, pair.node),
+         -dot(pair.force, surface));
+  });
   if (with_edges_) {
     edges_.for_each_active([&](const ActiveEdges& pair) {
       const std::array<Index, 2> first = ends_of(model, pair.first), second = ends_of(model, pair.second);

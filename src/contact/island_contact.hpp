@@ -7,9 +7,11 @@
 #include "contact/block_pairs.hpp"
 #include "contact/block_wear.hpp"
 #include "contact/candidates.hpp"
-#include "contact/edge_contact.hpp"
+#include "contact/edge_search.hpp"
+#include "contact/edge_watch.hpp"
 #include "contact/node_watch.hpp"
 #include "contact/pair_books.hpp"
+#include "contact/watched_rows.hpp"
 #include "model/model.hpp"
 #include "model/state.hpp"
 
@@ -73,36 +75,24 @@ class IslandContact {
   void store_books(model::State& state) const { books_.store(bodies_, state); }
 
  private:
-  /// Consecutive rows of candidates: the unit of parallel work. All lists ascend by (node, element).
-  struct Piece {
-    Index first_row{};
-    Index last_row{};
-    std::vector<model::ContactSide> memory;
-    std::vector<model::ContactSide> next_memory;
-    std::vector<ActivePair> active;
-  };
-
   void search_all(const model::Model& model, const Positions& x);
   void search_worn(const model::Model& model, const Positions& x);
   void search(const model::Model& model, const Positions& x);
-  void cut_into_pieces(const std::vector<model::ContactSide>& memory);
   void look(const model::Model& model, const Positions& now, const Positions& before);
-  void look(const model::Model& model, const Positions& now, const Positions& before, Piece& piece) const;
   void add(const model::Model& model, const Positions& x, const ActivePair& pair, NodeContact& nodes,
            BodyContact* bodies);
   void add(const model::Model& model, const Positions& x, const ActiveEdges& pair, NodeContact& nodes,
            BodyContact* bodies);
   void find_stiffest(const model::Model& model, const NodeContact& nodes);
   void count(double stiffness, double depth, Index node, Index element);
-  [[nodiscard]] std::vector<model::ContactSide> all_sides() const;
   [[nodiscard]] static Index owner(const model::Model& model, Index node, Index element);
 
   BlockPairs blocks_;
   BlockWear wear_;
-  CandidateSearch search_;
-  Candidates candidates_;
-  EdgeContact edges_;
-  std::vector<Piece> pieces_;
+  CandidateSearch node_search_;
+  EdgeSearch edge_search_;
+  WatchedRows<model::ContactSide, ActivePair> nodes_;
+  WatchedRows<model::EdgeSide, ActiveEdges> edges_;
   PairBooks books_;
   std::vector<Index> bodies_;
   double skin_{};
@@ -110,6 +100,7 @@ class IslandContact {
   double way_{};          ///< Bound of the relative motion of any two nodes since wear was measured [length]
   double most_way_{};     ///< What it may come to before wear must be measured [length]
   double moved_{};        ///< The same of two nodes near each other since candidates were listed, less way_ [length]
+  double travelled_{};    ///< The same of any two nodes since candidates were listed [length]
   double rounded_way_{};  ///< Bound of what rounding adds to a node's way in a step [length]
   bool enabled_{};
   bool with_edges_{};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/near_pairs.hpp"
+
 namespace fexp::contact {
 
 namespace {
@@ -27,7 +29,7 @@ bool same_element(const model::ContactSide& a, const model::ContactSide& b) noex
 
 }  // namespace
 
-void NodeWatch::look(Index node, std::span<const Index> candidates, std::span<const model::ContactSide> memory,
+void NodeWatch::look(Index node, CandidateRow candidates, std::span<const model::ContactSide> memory,
                      std::vector<model::ContactSide>& remembered, std::vector<ActivePair>& active) {
   if (!now_.has_surface_at(model_, node)) {
     return;
@@ -38,7 +40,7 @@ void NodeWatch::look(Index node, std::span<const Index> candidates, std::span<co
     recall(memory);
   } else {
     gather(candidates, memory);
-    measure();
+    measure(candidates);
     decide_sides(memory);
   }
   find_depths();
@@ -61,32 +63,38 @@ void NodeWatch::recall(std::span<const model::ContactSide> memory) {
   }
 }
 
-/// Candidates, remembered elements, and those on to which the node has slid from a remembered one that it has come
-/// through: there it may be at a depth at which nobody else would look for it.
-void NodeWatch::gather(std::span<const Index> candidates, std::span<const model::ContactSide> memory) {
+/// Candidates that are due, remembered elements, and those on to which the node has slid from a remembered one that it
+/// has come through: there it may be at a depth at which nobody else would look for it.
+void NodeWatch::gather(const CandidateRow& candidates, std::span<const model::ContactSide> memory) {
   deep_.clear();
   through_.clear();
   followed_.clear();
-  elements_.assign(candidates.begin(), candidates.end());
-  if (now_.layers != nullptr) {
-    std::erase_if(elements_, [this](Index element) { return !now_.has(model_, element); });
+  near_.clear();
+  for (std::size_t i = candidates.due_from(0); i < candidates.size(); i = candidates.due_from(i + 1)) {
+    if (now_.has(model_, candidates.partner(i))) {
+      near_.push_back({candidates.partner(i), static_cast<Index>(i)});
+    }
   }
   if (memory.empty()) {
     return;
   }
   for (const model::ContactSide& known : memory) {
     if (now_.has(model_, known.element)) {
-      elements_.push_back(known.element);
+      near_.push_back({known.element});
       follow(known);
     }
   }
   std::sort(deep_.begin(), deep_.end(), by_element);
   deep_.erase(std::unique(deep_.begin(), deep_.end(), same_element), deep_.end());
   for (const model::ContactSide& deep : deep_) {
-    elements_.push_back(deep.element);
+    near_.push_back({deep.element});
   }
-  std::sort(elements_.begin(), elements_.end());
-  elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
+  // Of those that come twice the candidate is kept.
+  std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) {
+    return a.element != b.element ? a.element < b.element : a.candidate > b.candidate;
+  });
+  const auto same = [](const Near& a, const Near& b) { return a.element == b.element; };
+  near_.erase(std::unique(near_.begin(), near_.end(), same), near_.end());
 }
 
 /// From an element that the node has come through to the neighbour that is closer now, until none is: there the pair
@@ -148,10 +156,11 @@ NodeWatch::Watched NodeWatch::measured(Index element) {
 
 /// Keeps pairs within watch distance, and those that the node has come through and that `follow` has found. Of all
 /// elements that share a feature, the closest acts (by squared distance, then number).
-void NodeWatch::measure() {
+void NodeWatch::measure(CandidateRow& candidates) {
   watched_.clear();
   auto followed = followed_.cbegin();  // In ascending order of elements, as these are
-  for (const Index element : elements_) {
+  for (const Near& near : near_) {
+    const Index element = near.element;
     while (followed != followed_.cend() && followed->element < element) {
       ++followed;
     }
@@ -161,6 +170,9 @@ void NodeWatch::measure() {
         is_known ? followed->closest.distance2 : closest_on(model_, now_, element, point_).distance2;
     if (distance2 < watch * watch || find(deep_, element) != nullptr) {
       watched_.push_back(is_known ? *followed : measured(element));
+    } else if (near.candidate != no_index) {
+      candidates.leave_alone(static_cast<std::size_t>(near.candidate),
+                             std::sqrt(distance2) * (1.0 - distance_rounding) - watch * (1.0 + distance_rounding));
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "contact/candidate_rows.hpp"
 #include "contact/surface.hpp"
 #include "physics/penalty.hpp"
 
@@ -47,7 +48,7 @@ class NodeWatch {
 
   /// Looks at `node`, which has `candidates` and `memory` (sides of this node's pairs at the last step; both ascending
   /// in element). Appends what is remembered now to `remembered` and pairs with a force to `active`.
-  void look(Index node, std::span<const Index> candidates, std::span<const model::ContactSide> memory,
+  void look(Index node, CandidateRow candidates, std::span<const model::ContactSide> memory,
             std::vector<model::ContactSide>& remembered, std::vector<ActivePair>& active);
 
  private:
@@ -75,10 +76,16 @@ class NodeWatch {
     }
   };
 
+  /// An element to be measured, and which of the candidates it is, if it is one.
+  struct Near {
+    Index element{};
+    Index candidate{no_index};
+  };
+
   void recall(std::span<const model::ContactSide> memory);
-  void gather(std::span<const Index> candidates, std::span<const model::ContactSide> memory);
+  void gather(const CandidateRow& candidates, std::span<const model::ContactSide> memory);
   void follow(const model::ContactSide& known);
-  void measure();
+  void measure(CandidateRow& candidates);
   void decide_sides(std::span<const model::ContactSide> memory);
   void find_depths();
   void leave_one_of_smooth_neighbours();
@@ -112,7 +119,7 @@ class NodeWatch {
   bool still_{};
   Index node_{};
   Vec3d point_;
-  std::vector<Index> elements_;
+  std::vector<Near> near_;
   std::vector<model::ContactSide> deep_;     ///< Elements that the node has come through and where it belongs
   std::vector<model::ContactSide> through_;  ///< Of those remembered, the ones that the node has come through
   std::vector<Watched> followed_;            ///< Those remembered, as they are measured now

@@ -28,11 +28,11 @@ class WholeSearch {
     wear_.begin(pairs_, x);
   }
   void find_nodes(const model::Model& model, const Positions& x, double skin, std::span<const Index> remembered,
-                  Candidates& found) {
+                  CandidateRows& found) {
     nodes_.search(model, pairs_, wear_, blocks_, x, skin);
     nodes_.list(pairs_, wear_, remembered, found);
   }
-  void find_edges(const Positions& x, double skin, std::span<const Index> remembered, EdgeCandidates& found) {
+  void find_edges(const Positions& x, double skin, std::span<const Index> remembered, CandidateRows& found) {
     edges_.search(pairs_, wear_, blocks_, x, skin);
     edges_.list(pairs_, wear_, remembered, found);
   }

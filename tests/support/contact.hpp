@@ -111,10 +111,11 @@ class Tip {
     for (Index e = 0; e < model.bodies[0].elements.end; ++e) {
       elements.push_back(e);
     }
+    std::vector<double> due(elements.size(), 0.0);
     remembered_.clear();
     active.clear();
     contact::NodeWatch(model, {motion.data(), 0.0}, {motion.data(), dt})
-        .look(node, elements, memory, remembered_, active);
+        .look(node, {elements, due, 0.0}, memory, remembered_, active);
   }
 
   std::vector<model::ContactSide> remembered_;

@@ -45,14 +45,42 @@ std::set<Pair> slow_pairs(const model::Model& model, const Positions& x, double 
   return pairs;
 }
 
-std::set<Pair> pairs_of(const Candidates& c) {
+std::set<Pair> pairs_of(const CandidateRows& c) {
   std::set<Pair> pairs;
-  for (std::size_t row = 0; row < c.node.size(); ++row) {
+  for (std::size_t row = 0; row < c.owner.size(); ++row) {
     for (Index i = c.start[row]; i < c.start[row + 1]; ++i) {
-      pairs.emplace(c.node[row], c.element[at(i)]);
+      pairs.emplace(c.owner[row], c.partner[at(i)]);
     }
   }
-  EXPECT_EQ(pairs.size(), c.element.size()) << "a pair comes twice";
+  EXPECT_EQ(pairs.size(), c.partner.size()) << "a pair comes twice";
+  return pairs;
+}
+
+/// All pairs of edges that cross each other within watch distance, by a loop over all.
+std::set<Pair> slow_edge_pairs(const model::Model& model, const Positions& x) {
+  std::vector<Index> edges;
+  for (Index edge = 0; edge < 3 * model.element_count(); ++edge) {
+    const Index other = model.neighbour[at(edge / 3)][at(edge % 3)];
+    if (other == no_index || edge / 3 < other) {
+      edges.push_back(edge);
+    }
+  }
+  constexpr double least = physics::feature_tolerance, most = 1.0 - physics::feature_tolerance;
+  std::set<Pair> pairs;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    for (std::size_t j = i + 1; j < edges.size(); ++j) {
+      const auto a = ends_of(model, edges[i]), b = ends_of(model, edges[j]);
+      if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1] ||
+          !model.can_touch(model.node_body[at(a[0])], model.node_body[at(b[0])])) {
+        continue;
+      }
+      const auto c = physics::closest_on_lines(x(a[0]), x(a[1]), x(b[0]), x(b[1]));
+      if (c.sine2 > physics::parallel_sine2 && c.first > least && c.first < most && c.second > least &&
+          c.second < most && std::abs(c.gap) < edge_reach(model, edges[i]) + edge_reach(model, edges[j])) {
+        pairs.emplace(edges[i], edges[j]);
+      }
+    }
+  }
   return pairs;
 }
 
@@ -78,11 +106,11 @@ TEST(candidates, are_those_of_a_loop_over_all_pairs) {
           m.position += Vec3d{shift(random), shift(random), shift(random)};
         }
         const Positions x{state.motion.data(), 0.0};
-        Candidates found;
+        CandidateRows found;
         search.find_partners(model, x, skin);
         search.find_nodes(model, x, skin, {}, found);
         EXPECT_EQ(pairs_of(found), slow_pairs(model, x, skin));
-        EXPECT_GT(found.element.size(), 100U);
+        EXPECT_GT(found.partner.size(), 100U);
       }
     }
   }
@@ -108,7 +136,7 @@ TEST(candidates, of_a_barrier_are_those_of_a_loop_over_all_pairs) {
     }
     const Positions x{state.motion.data(), 0.0};
     for (const double skin : {0.0, 0.1, 1.0}) {
-      Candidates found;
+      CandidateRows found;
       search.find_partners(model, x, skin);
       search.find_nodes(model, x, skin, {}, found);
       EXPECT_EQ(pairs_of(found), slow_pairs(model, x, skin)) << shift.x << ", " << shift.y << ", " << skin;
@@ -122,19 +150,19 @@ TEST(candidates, ascend_and_give_remembered_nodes_a_row_and_each_row_the_slack_o
   search.assign(model, all_bodies(model));
   const model::State state = model::initial_state(model);
   const Positions x{state.motion.data(), 0.0};
-  Candidates found;
+  CandidateRows found;
   const std::vector<Index> remembered{0, 0, 3, 17, model.node_count() - 1};
   search.find_partners(model, x, 0.05);
   search.find_nodes(model, x, 0.05, remembered, found);
-  EXPECT_TRUE(std::is_sorted(found.node.begin(), found.node.end()));
+  EXPECT_TRUE(std::is_sorted(found.owner.begin(), found.owner.end()));
   for (const Index node : remembered) {
-    EXPECT_TRUE(std::binary_search(found.node.begin(), found.node.end(), node));
+    EXPECT_TRUE(std::binary_search(found.owner.begin(), found.owner.end(), node));
   }
-  for (std::size_t row = 0; row < found.node.size(); ++row) {
+  for (std::size_t row = 0; row < found.owner.size(); ++row) {
     double least = HUGE_VAL;
     for (Index i = found.start[row]; i < found.start[row + 1]; ++i) {
-      const Index e = found.element[at(i)], n = found.node[row];
-      EXPECT_TRUE(i == found.start[row] || found.element[at(i - 1)] < e);
+      const Index e = found.partner[at(i)], n = found.owner[row];
+      EXPECT_TRUE(i == found.start[row] || found.partner[at(i - 1)] < e);
       least = std::min(least, std::sqrt(closest_on(model, x, e, x(n)).distance2) - watch_distance(model, n, e));
     }
     EXPECT_LE(found.slack[row], least);
@@ -180,10 +208,35 @@ class Dance {
   Vec3d common_;
 };
 
+/// Number of pairs of nodes with elements and of edges that an island remembers, which are all that are near.
+std::pair<std::size_t, std::size_t> all_near_are_remembered(const model::Model& model, const test::Contact& contact,
+                                                            model::State& state) {
+  contact.island.store_sides(model, state);
+  std::set<Pair> nodes, edges;
+  for (const auto& sides : state.sides) {
+    for (const model::ContactSide& s : sides) {
+      nodes.emplace(s.node, s.element);
+    }
+  }
+  for (const auto& sides : state.edge_sides) {
+    for (const model::EdgeSide& s : sides) {
+      edges.emplace(s.first, s.second);
+    }
+  }
+  const Positions x{state.motion.data(), 0.0};
+  std::size_t near = 0;
+  for (const Pair& pair : slow_pairs(model, x, 0.0)) {
+    EXPECT_TRUE(nodes.count(pair)) << "node " << pair.first << " element " << pair.second;
+    ++near;
+  }
+  EXPECT_EQ(edges, slow_edge_pairs(model, x));
+  return {near, edges.size()};
+}
+
 TEST(candidates, no_pair_within_watch_distance_is_missed_over_random_motions) {
   const model::Model model = bodies_of_all_sizes(true, false);
   Index searches = 0;
-  std::size_t watched = 0;
+  std::size_t watched = 0, watched_edges = 0;
   constexpr int steps = 120;
   for (unsigned seed = 0; seed < 6; ++seed) {
     Dance dance(model, seed, std::pow(10.0, -1.0 - 0.25 * seed));
@@ -191,28 +244,56 @@ TEST(candidates, no_pair_within_watch_distance_is_missed_over_random_motions) {
     test::Contact contact(model, state);
     contact.evaluate(model, state, 0.0);
     ContactReport report;
-    for (int i = 0; i < steps; ++i) {
+    for (int i = 0; i < steps && !::testing::Test::HasFailure(); ++i) {
+      SCOPED_TRACE(::testing::Message() << "seed " << seed << " step " << i);
       const double dt = 0.02, way = dance.step(state, i * dt, dt);
       contact.island.advance(model, state, way);
       report = contact.evaluate(model, state, dt);
-      contact.island.store_sides(model, state);
-      std::set<Pair> remembered;
-      for (const auto& sides : state.sides) {
-        for (const model::ContactSide& s : sides) {
-          remembered.emplace(s.node, s.element);
-        }
-      }
-      for (const Pair& pair : slow_pairs(model, {state.motion.data(), 0.0}, 0.0)) {
-        ASSERT_TRUE(remembered.count(pair))
-            << "seed " << seed << " step " << i << " node " << pair.first << " element " << pair.second;
-        ++watched;
-      }
+      const auto [nodes, edges] = all_near_are_remembered(model, contact, state);
+      watched += nodes;
+      watched_edges += edges;
     }
     searches += report.searches;
   }
   // The claim is about steps without a search.
   EXPECT_LT(searches, 6 * steps / 2);
   EXPECT_GT(watched, 1000U);
+  EXPECT_GT(watched_edges, 1000U);
+}
+
+/// The bound of what nodes may have travelled is then what they have.
+TEST(candidates, no_pair_is_missed_of_bodies_that_go_straight_at_each_other) {
+  const model::Model model = bodies_of_all_sizes(false, false);
+  constexpr int steps = 150;
+  Index searches = 0;
+  std::size_t watched = 0, watched_edges = 0;
+  for (const Vec3d& shift : {Vec3d{0.0, 0.0, 0.4}, Vec3d{0.03, 0.02, 0.37}, Vec3d{0.2, -0.1, 0.34}}) {
+    model::State state = model::initial_state(model);
+    const auto move = [&](double part) {
+      for (Index n = 0; n < model.node_count(); ++n) {
+        const Index body = model.node_body[at(n)];
+        const Vec3d way = (body == 1 ? part : body == 0 ? -part : 0.0) * shift;
+        state.motion[at(n)].position += way;
+      }
+    };
+    move(0.5);
+    test::Contact contact(model, state);
+    contact.evaluate(model, state, 0.0);
+    ContactReport report;
+    for (int i = 0; i < steps && !::testing::Test::HasFailure(); ++i) {
+      SCOPED_TRACE(::testing::Message() << "shift " << shift.x << " step " << i);
+      move(-1.0 / steps);
+      contact.island.advance(model, state, norm(shift) / steps);
+      report = contact.evaluate(model, state, 0.01);
+      const auto [nodes, edges] = all_near_are_remembered(model, contact, state);
+      watched += nodes;
+      watched_edges += edges;
+    }
+    searches += report.searches;
+  }
+  EXPECT_LT(searches, 3 * steps / 4);
+  EXPECT_GT(watched, 1000U);
+  EXPECT_GT(watched_edges, 100U);
 }
 
 }  // namespace

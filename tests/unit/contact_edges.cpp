@@ -114,7 +114,8 @@ TEST(edges, of_flat_folds_leave_it_to_nodes_and_faces) {
   const contact::Positions x{roofs.state.motion.data(), 0.0};
   std::vector<model::EdgeSide> remembered;
   std::vector<contact::ActiveEdges> active;
-  contact::EdgeWatch(roofs.model, x, x).look(ridges[0], {&ridges[1], 1}, {}, remembered, active);
+  double due = 0.0;
+  contact::EdgeWatch(roofs.model, x, x).look(ridges[0], {{&ridges[1], 1}, {&due, 1}, 0.0}, {}, remembered, active);
   EXPECT_EQ(remembered.size(), 1U);
   EXPECT_TRUE(active.empty());
 }
@@ -241,20 +242,20 @@ TEST(edge_search, finds_all_pairs_and_no_others_whatever_their_blocks_are) {
   contact::WholeSearch search;
   const std::vector<Index> bodies{0, 1};
   search.assign(model, bodies);
-  contact::EdgeCandidates found;
+  contact::CandidateRows found;
   constexpr double skin = 0.2;
   const std::vector<Index> remembered{1, 1, 40};
   search.find_partners(model, x, skin);
   search.find_edges(x, skin, remembered, found);
   std::set<std::pair<Index, Index>> pairs, expected;
-  for (std::size_t row = 0; row < found.first.size(); ++row) {
+  for (std::size_t row = 0; row < found.owner.size(); ++row) {
     for (Index c = found.start[row]; c < found.start[row + 1]; ++c) {
-      pairs.insert({found.first[row], found.second[at(c)]});
+      pairs.insert({found.owner[row], found.partner[at(c)]});
     }
   }
-  EXPECT_TRUE(std::is_sorted(found.first.begin(), found.first.end()));
+  EXPECT_TRUE(std::is_sorted(found.owner.begin(), found.owner.end()));
   for (const Index row : remembered) {
-    EXPECT_TRUE(std::binary_search(found.first.begin(), found.first.end(), row));
+    EXPECT_TRUE(std::binary_search(found.owner.begin(), found.owner.end(), row));
   }
   for (Index a = 0; a < 3 * model.element_count(); ++a) {
     for (Index b = a + 1; b < 3 * model.element_count(); ++b) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -71,6 +72,72 @@ TEST(edge_distance, is_the_smallest_over_fine_steps_along_both_edges) {
 
 TEST(edge_distance, of_edges_without_length_is_that_of_points) {
   EXPECT_EQ(edge_distance2({0, 0, 0}, {0, 0, 0}, {3, 4, 0}, {3, 4, 0}), 25.0);
+}
+
+bool cross_within_both(const ClosestOnLines& c, double least_sine2) {
+  return c.sine2 > least_sine2 && c.first > 0.0 && c.first < 1.0 && c.second > 0.0 && c.second < 1.0;
+}
+
+/// Ends that move by half the motion each, in directions that were best among some, and then among some near these.
+TEST(motion_before_crossing, is_less_than_any_motion_that_makes_edges_cross) {
+  std::mt19937 random(6);
+  const auto direction = [&] {
+    const Vec3d d = random_point(random, 1.0);
+    return (1.0 / norm(d)) * d;
+  };
+  constexpr double least_sine2 = parallel_sine2;
+  int outside = 0, parallel = 0;
+  double tightest = HUGE_VAL;
+  for (int i = 0; i < 20000; ++i) {
+    const std::array<Vec3d, 4> x{random_point(random, 1.0), random_point(random, 1.0), random_point(random, 1.0),
+                                 random_point(random, 1.0)};
+    std::array<Vec3d, 4> e = x;
+    if (i % 3 == 0) {
+      // Almost parallel, of other lengths, at all distances
+      e[3] = e[2] + (0.2 + 0.001 * (i % 2000)) * (e[1] - e[0]) + 0.04 * random_point(random, norm(e[1] - e[0]));
+    }
+    const ClosestOnLines c = closest_on_lines(e[0], e[1], e[2], e[3]);
+    const double motion = motion_before_crossing(e[0], e[1], e[2], e[3], c, least_sine2);
+    if (cross_within_both(c, least_sine2)) {
+      ASSERT_EQ(motion, 0.0);
+      continue;
+    }
+    (c.sine2 > least_sine2 ? outside : parallel) += 1;
+    for (int k = 0; k < 40; ++k) {
+      std::array<Vec3d, 4> moved = e;
+      for (Vec3d& end : moved) {
+        end += (0.5 * motion) * direction();
+      }
+      const ClosestOnLines now = closest_on_lines(moved[0], moved[1], moved[2], moved[3]);
+      ASSERT_FALSE(cross_within_both(now, least_sine2)) << "edges " << i << " motion " << motion;
+    }
+    // By moving one edge as a whole the crossing is reached, so that the bound means something.
+    if (c.sine2 > 0.5 && motion > 0.0) {
+      const Vec3d a = e[1] - e[0], b = e[3] - e[2];
+      const double first = std::min(std::max(c.first, 0.001), 0.999),
+                   second = std::min(std::max(c.second, 0.001), 0.999);
+      tightest = std::min(tightest, norm((c.first - first) * a - (c.second - second) * b) / motion);
+    }
+  }
+  EXPECT_GT(outside, 5000);
+  EXPECT_GT(parallel, 500);
+  EXPECT_GE(tightest, 1.0);
+  EXPECT_LT(tightest, 10.0);
+}
+
+TEST(motion_before_crossing, is_nothing_where_edges_cross_or_have_no_length_and_grows_with_how_far_off_they_are) {
+  const auto of = [](const Vec3d& shift, double length) {
+    const Vec3d b0 = shift + Vec3d{0.0, -0.5, 0.1}, b1 = b0 + Vec3d{0.0, length, 0.0};
+    const Vec3d a0{-0.5, 0.0, 0.0}, a1{0.5, 0.0, 0.0};
+    return motion_before_crossing(a0, a1, b0, b1, closest_on_lines(a0, a1, b0, b1), parallel_sine2);
+  };
+  EXPECT_EQ(of({}, 1.0), 0.0);
+  EXPECT_EQ(of({0.0, 2.0, 0.0}, 0.0), 0.0);
+  const double near = of({0.6, 0.0, 0.0}, 1.0), far = of({0.8, 0.0, 0.0}, 1.0);
+  EXPECT_GT(near, 0.01);
+  EXPECT_LT(near, 0.1);
+  EXPECT_GT(far, near);
+  EXPECT_EQ(of({50.0, 0.0, 0.0}, 1.0), 0.1);
 }
 
 TEST(sharpness, is_full_where_both_surfaces_fall_away_and_fades_where_one_leads_to_the_other_edge) {

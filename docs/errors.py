@@ -201,6 +201,15 @@ CASES = {
             ("poisson = 0.45", 'poisson = 0.45\nlaw = "j2_linear"\nyield = 1.0e5\ntangent_modulus = 5.0e6')),
         "A table of hardening that falls": Case(
             ("poisson = 0.45", 'poisson = 0.45\nlaw = "j2_table"\ntable = [[0.0, 1.0e5], [0.1, 2.0e5], [0.2, 1.9e5]]')),
+        "Two laws of the rate of strain": Case(
+            ("poisson = 0.45", 'poisson = 0.45\nlaw = "j2_linear"\nyield = 1.0e5\nrate_sensitivity = 0.1\n'
+                               'cowper_symonds = { rate = 40.0, exponent = 5.0 }')),
+        "A filter of a rate that nothing depends on": Case(
+            ("poisson = 0.45", 'poisson = 0.45\nlaw = "j2_linear"\nyield = 1.0e5\nrate_cutoff = 1.0e4')),
+        "A material that has melted": Case(
+            ("poisson = 0.45", 'poisson = 0.45\nlaw = "j2_linear"\nyield = 1.0e5\n'
+                               'heating = { specific_heat = 2000.0, melting_temperature = 450.0, '
+                               'reference_temperature = 293.0, initial_temperature = 500.0 }')),
         "Too few points of Lobatto's rule": Case(
             ("thickness = 0.005", 'thickness = 0.005\npoints = 2\nquadrature = "lobatto"')),
         "A velocity away from an axis, on it": Case(

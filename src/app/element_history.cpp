@@ -67,6 +67,7 @@ std::vector<io::Column> ElementHistory::columns(const io::UnitNames& units) {
   columns.push_back({"thickness", units.of("length")});
   columns.push_back({"plastic_strain", ""});
   columns.push_back({"deleted", ""});
+  columns.push_back({"temperature", units.of("temperature")});
   return columns;
 }
 
@@ -82,7 +83,7 @@ void ElementHistory::write(const model::State& state, io::CsvWriter& file) const
       add_cells(cells, s.top);
       add_cells(cells, s.bottom);
       cells.insert(cells.end(), {io::Cell(s.thickness), io::Cell(s.plastic_strain),
-                                 io::Cell(static_cast<std::int64_t>(s.deleted ? 1 : 0))});
+                                 io::Cell(static_cast<std::int64_t>(s.deleted ? 1 : 0)), io::Cell(s.temperature)});
       file.row(cells);
     }
   }

@@ -32,7 +32,13 @@ OperationCount count_layered(const model::SectionData& section, const physics::S
         stiffness, motion, dt, [&](const Counted& area, const physics::ShellIncrement<Counted>& increment) {
           std::visit(
               [&](const auto& curve) {
-                physics::update_layered(stiffness, layered, curve, dt, area, increment, load, store, motion.resultants);
+                if (layered.has_conditions()) {
+                  physics::update_layered<true>(stiffness, layered, curve, dt, area, increment, load, store,
+                                                motion.resultants);
+                } else {
+                  physics::update_layered(stiffness, layered, curve, dt, area, increment, load, store,
+                                          motion.resultants);
+                }
               },
               layered.plasticity.hardening);
         }));

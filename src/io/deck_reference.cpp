@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -210,6 +211,16 @@ class ReferenceWriter {
     for_each_alternative<Variant>([&]<class Alternative>(const Alternative&) {
       text_ += fmt::format("\n#### `{}` with `{} = \"{}\"`\n", path, selector, Alternative::kind);
       FieldTable(text_).rows<Alternative>();
+    });
+    // The tables inside them once each, as several may have the same.
+    std::set<std::string> written;
+    for_each_alternative<Variant>([&]<class Alternative>(const Alternative&) {
+      for_each_field<Alternative>([&](const auto& field) {
+        const std::string inside = fmt::format("{}.{}", path, field.name);
+        if (written.insert(inside).second) {
+          inner<typename std::decay_t<decltype(field)>::ValueType>(inside, field.meaning);
+        }
+      });
     });
   }
 

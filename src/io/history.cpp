@@ -110,11 +110,12 @@ std::string UnitNames::of(std::string_view dimension) const {
   for (std::size_t begin = 0; begin < dimension.size();) {
     const std::size_t end = std::min(dimension.find_first_of("*/^ ,-0123456789", begin), dimension.size());
     const std::string word(dimension.substr(begin, end - begin));
-    const std::string* name = word == "length"  ? &length
-                              : word == "time"  ? &time
-                              : word == "mass"  ? &mass
-                              : word == "force" ? &force
-                                                : &word;
+    const std::string* name = word == "length"        ? &length
+                              : word == "time"        ? &time
+                              : word == "mass"        ? &mass
+                              : word == "force"       ? &force
+                              : word == "temperature" ? &temperature
+                                                      : &word;
     text += name->empty() ? word : *name;
     if (end < dimension.size()) {
       text += dimension[end];

@@ -23,12 +23,14 @@ struct UnitNames {
   std::string time;
   std::string mass;
   std::string force;
+  std::string temperature;
 
   static constexpr auto fields = std::tuple{
       Field{"length", "-", "Name of the unit of length, such as \"mm\".", &UnitNames::length},
       Field{"time", "-", "Name of the unit of time.", &UnitNames::time},
       Field{"mass", "-", "Name of the unit of mass.", &UnitNames::mass},
       Field{"force", "-", "Name of the unit of force.", &UnitNames::force},
+      Field{"temperature", "-", "Name of the unit of temperature.", &UnitNames::temperature},
   };
 
   /// "force/length^2" -> "kN/mm^2"; the dimension's own words where no name is given; "-" stays.

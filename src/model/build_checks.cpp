@@ -9,6 +9,7 @@
 
 #include "model/build_contact.hpp"
 #include "model/check_tools.hpp"
+#include "model/material_checks.hpp"
 #include "model/wall_checks.hpp"
 
 namespace fexp::model {
@@ -29,54 +30,6 @@ void check_curve(const Curve& curve, ErrorList& errors) {
   if (!good) {
     errors.add(curve.place, fmt::format("curve \"{}\" is no function of time", curve.name),
                "at least one point, finite numbers, ascending times", "correct its points");
-  }
-}
-
-/// A law of linear hardening: it must not be stiffer beyond the yield stress than before.
-void check_hardening(const Material& material, const physics::J2Linear& law, ErrorList& errors) {
-  if (law.tangent_modulus >= law.young) {
-    errors.add(material.place,
-               fmt::format("material \"{}\": tangent_modulus is {}, young is {}", material.name, law.tangent_modulus,
-                           law.young),
-               "a tangent_modulus less than young", "correct one of them");
-  }
-}
-
-void check_hardening(const Material& material, const physics::J2Table& law, ErrorList& errors) {
-  std::string wrong = law.table.count == 0 ? "has no points" : "";
-  const std::array<double, 2>* last = nullptr;
-  for (const std::array<double, 2>& point : law.table) {
-    const auto& [strain, stress] = point;
-    if (!wrong.empty()) {
-      break;
-    }
-    if (!(stress > 0.0)) {
-      wrong = fmt::format("has a yield stress of {} at a strain of {}", stress, strain);
-    } else if (last == nullptr && strain != 0.0) {
-      wrong = fmt::format("begins at a strain of {}", strain);
-    } else if (last != nullptr && !(strain > (*last)[0])) {
-      wrong = fmt::format("has a strain of {} after one of {}", strain, (*last)[0]);
-    } else if (last != nullptr && !(stress >= (*last)[1])) {
-      wrong = fmt::format("has a yield stress of {} after one of {}", stress, (*last)[1]);
-    }
-    last = &point;
-  }
-  if (!wrong.empty()) {
-    errors.add(material.place, fmt::format("the table of material \"{}\" {}", material.name, wrong),
-               "strains ascending from 0, stresses > 0 that do not fall",
-               "correct the table; plastic strain is total strain less stress/young");
-  }
-}
-
-void check_materials(const Description& description, ErrorList& errors) {
-  for (const Material& material : description.materials) {
-    std::visit(
-        [&](const auto& law) {
-          if constexpr (requires { check_hardening(material, law, errors); }) {
-            check_hardening(material, law, errors);
-          }
-        },
-        material.law);
   }
 }
 

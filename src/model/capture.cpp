@@ -55,6 +55,7 @@ void capture_element(const Model& model, const State& state, Index element, Fram
   frame.energy_density[e] = static_cast<float>(element_value(model, state, element, row_energy) / volume);
   frame.thickness[e] = static_cast<float>(stresses.thickness);
   frame.plastic_strain[e] = static_cast<float>(stresses.plastic_strain);
+  frame.temperature[e] = static_cast<float>(stresses.temperature);
   frame.deleted[e] = stresses.deleted ? 1 : 0;
 }
 
@@ -68,6 +69,7 @@ void capture_elements(const Model& model, const State& state, std::span<const In
   frame.energy_density.resize(count);
   frame.thickness.resize(count);
   frame.plastic_strain.resize(count);
+  frame.temperature.resize(count);
   frame.deleted.resize(count);
   frame.body.resize(count);
   frame.island.resize(count);

@@ -37,6 +37,7 @@ struct Frame {
   std::vector<float> energy_density;    ///< Internal energy over reference volume [force/length^2]
   std::vector<float> thickness;         ///< [length]
   std::vector<float> plastic_strain;    ///< Effective, largest of the element's points [-]
+  std::vector<float> temperature;       ///< Highest of the element's points, 0 where they do not heat [temperature]
   std::vector<Index> deleted;           ///< 1 when the element has failed, else 0
   std::vector<Index> body;
   std::vector<Index> island;  ///< no_index for a barrier

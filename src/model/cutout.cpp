@@ -83,6 +83,7 @@ Frame cut_out(const Frame& frame, const Cutout& cutout) {
   cut.energy_density = at_elements(frame.energy_density);
   cut.thickness = at_elements(frame.thickness);
   cut.plastic_strain = at_elements(frame.plastic_strain);
+  cut.temperature = at_elements(frame.temperature);
   cut.deleted = at_elements(frame.deleted);
   cut.body = at_elements(frame.body);
   cut.island = at_elements(frame.island);

@@ -16,10 +16,17 @@ void take_layers(const Model& model, const State& state, Index element, ElementS
     const double mean = 0.5 * row(first + physics::point_sum), half = 0.5 * row(first + physics::point_difference);
     return std::array{mean + half, mean - half, row(first + physics::point_shear)};
   };
-  const Index points = model.section_of(element).layered.points.count;
+  const physics::LayeredSection& section = model.section_of(element).layered;
+  const Index points = section.points.count;
   for (Index p = 0; p < points; ++p) {
     stresses.plastic_strain =
         std::max(stresses.plastic_strain, row(physics::layer_points + p * physics::point_rows + physics::point_strain));
+  }
+  if (section.plasticity.heat.heats()) {
+    stresses.temperature = row(section.temperature_row(0));
+    for (Index p = 1; p < points; ++p) {
+      stresses.temperature = std::max(stresses.temperature, row(section.temperature_row(p)));
+    }
   }
   stresses.top = stress_at(points - 1);
   stresses.bottom = stress_at(0);

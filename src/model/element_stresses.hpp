@@ -18,6 +18,7 @@ struct ElementStresses {
   std::array<double, 3> bottom{};  ///< On the other side [force/length^2]
   double thickness{};              ///< [length]
   double plastic_strain{};         ///< Effective, largest of the element's points [-]
+  double temperature{};            ///< Highest of the element's points, 0 where they do not heat [temperature]
   bool deleted{};
 };
 

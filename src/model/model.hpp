@@ -41,7 +41,7 @@ struct SectionData {
   physics::LayeredSection layered{};
 
   /// Rows of the history of an element's points.
-  [[nodiscard]] Index layer_rows() const noexcept { return physics::layer_rows(layered.points.count); }
+  [[nodiscard]] Index layer_rows() const noexcept { return layered.rows(); }
 };
 
 /// A connected set of elements: the unit of the interaction graph, of energy sums, of hashes and of migration.

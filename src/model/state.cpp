@@ -243,8 +243,14 @@ State initial_state(const Model& model) {
   state.layers.assign(rows * at(block_lanes), 0.0);
   for (const ElementBlock& block : model.blocks) {
     if (block.layer_row != no_index) {
-      std::fill_n(state.layers.data() + at(block.layer_row + physics::layer_thickness) * at(block_lanes), block_lanes,
-                  model.sections[at(block.section)].thickness);
+      const SectionData& section = model.sections[at(block.section)];
+      const auto fill = [&](Index row, double value) {
+        std::fill_n(state.layers.data() + at(block.layer_row + row) * at(block_lanes), block_lanes, value);
+      };
+      fill(physics::layer_thickness, section.thickness);
+      for (int p = 0; p < (section.layered.plasticity.heat.heats() ? section.layered.points.count : 0); ++p) {
+        fill(section.layered.temperature_row(p), section.layered.plasticity.heat.initial);
+      }
     }
   }
   for (const RigidBody& rigid : model.rigid_bodies) {

@@ -9,6 +9,8 @@
 #include "base/elementary.hpp"
 #include "base/inline.hpp"
 #include "base/pack.hpp"
+#include "physics/adiabatic_heating.hpp"
+#include "physics/rate_dependence.hpp"
 
 /// Yield stress over effective plastic strain, made ready for the kernels: values `at(strain, slope)` of any number
 /// type, from `least()` on, `smooth` or with corners. None falls anywhere, so that a return to the yield surface has
@@ -78,13 +80,11 @@ struct TableHardening {
 
 using Hardening = std::variant<LinearHardening, PowerHardening, TableHardening>;
 
-/// What makes an elastic law plastic: hardening, its dependence on the rate of strain, and failure.
+/// What makes an elastic law plastic: hardening, what else the yield stress depends on, and failure.
 struct J2Plasticity {
   Hardening hardening;
-  /// C of the factor 1 + C ln(rate/reference) on the yield stress (G. R. Johnson, W. H. Cook, 7th International
-  /// Symposium on Ballistics, 1983, 541-547); rates below the reference count as the reference.
-  double rate_sensitivity{};
-  double reference_rate{1.0};  ///< [1/time]
+  RateDependence rate;
+  ThermalSoftening heat;
   /// Effective plastic strain at which a point fails [-]
   double failure_strain{std::numeric_limits<double>::infinity()};
 

@@ -2,14 +2,17 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <tuple>
 
 #include "base/field.hpp"
 #include "base/short_list.hpp"
+#include "physics/adiabatic_heating.hpp"
 #include "physics/hardening.hpp"
 #include "physics/linear_elastic.hpp"
 #include "physics/plane_stress_material.hpp"
+#include "physics/rate_dependence.hpp"
 
 /// Laws of elastic-plastic metals: von Mises's yield condition with isotropic hardening and the flow rule of Prandtl
 /// and Reuss, in plane stress. They differ in how the yield stress grows with the effective plastic strain.
@@ -23,6 +26,9 @@ struct J2Law {
   double rate_sensitivity{};    ///< C of the factor 1 + C ln(rate/reference_rate) [-]
   double reference_rate{1.0};   ///< [1/time]
   double failure_strain{-1.0};  ///< Effective plastic strain [-]; negative: nothing fails
+  double rate_cutoff{};         ///< Frequency of the filter of the rate [1/time]; 0: it is not filtered
+  std::optional<CowperSymonds> cowper_symonds{};
+  std::optional<AdiabaticHeating> heating{};
 
   static constexpr Range poisson_range{0.0, 0.5, true, false, ">= 0 and < 0.5"};
   static constexpr auto elastic_fields = std::tuple{
@@ -41,13 +47,31 @@ struct J2Law {
             &J2Law::rate_sensitivity, non_negative},
       Field{"reference_rate", "1/time", "Rate of strain up to which the yield stress is as given.",
             &J2Law::reference_rate, positive},
+      Field{"cowper_symonds", "-", "Factor 1 + (rate/D)^(1/P) on the yield stress, instead of `rate_sensitivity`.",
+            &J2Law::cowper_symonds},
+  };
+  /// Of all these laws, whatever the rate does.
+  static constexpr auto condition_fields = std::tuple{
+      Field{"rate_cutoff", "1/time",
+            "Frequency above which the rate of strain that the yield stress depends on is filtered out; 0: it is not "
+            "filtered.",
+            &J2Law::rate_cutoff, non_negative},
+      Field{"heating", "-", "Plastic work heats and softens the material; when left out it does not.", &J2Law::heating},
   };
 
   [[nodiscard]] constexpr PlaneStressModuli moduli() const noexcept {
     return LinearElastic{density, young, poisson}.moduli();
   }
+  [[nodiscard]] bool depends_on_rate() const noexcept { return rate_sensitivity > 0.0 || cowper_symonds.has_value(); }
   [[nodiscard]] J2Plasticity with(const Hardening& hardening) const noexcept {
-    J2Plasticity plasticity{hardening, rate_sensitivity, reference_rate};
+    J2Plasticity plasticity{hardening, {rate_sensitivity, reference_rate, 0.0, rate_cutoff}, {}};
+    if (cowper_symonds) {
+      plasticity.rate.reference = cowper_symonds->rate;
+      plasticity.rate.inverse_exponent = 1.0 / cowper_symonds->exponent;
+    }
+    if (heating) {
+      plasticity.heat = ThermalSoftening::of(*heating, density);
+    }
     if (failure_strain > 0.0) {
       plasticity.failure_strain = failure_strain;
     }
@@ -71,7 +95,7 @@ struct J2Linear : J2Law {
               "Slope of stress over total strain beyond the yield stress, less than Young's modulus; 0: no hardening.",
               &J2Linear::tangent_modulus, non_negative},
       },
-      J2Law::rate_fields);
+      J2Law::rate_fields, J2Law::condition_fields);
 
   [[nodiscard]] J2Plasticity plasticity() const noexcept {
     return with(LinearHardening{yield, young * tangent_modulus / (young - tangent_modulus)});
@@ -92,7 +116,8 @@ struct J2Power : J2Law {
             Presence::required},
       Field{"n", "-", "Exponent of the plastic strain.", &J2Power::n, exponent_range, Presence::required},
   };
-  static constexpr auto fields = std::tuple_cat(J2Law::elastic_fields, power_fields, J2Law::rate_fields);
+  static constexpr auto fields =
+      std::tuple_cat(J2Law::elastic_fields, power_fields, J2Law::rate_fields, J2Law::condition_fields);
 
   [[nodiscard]] J2Plasticity plasticity() const noexcept { return with(PowerHardening{a, b, n}); }
 };
@@ -112,7 +137,7 @@ struct J2Table : J2Law {
               "between them, constant behind the last one.",
               &J2Table::table, any_number, Presence::required},
       },
-      J2Law::rate_fields);
+      J2Law::rate_fields, J2Law::condition_fields);
 
   [[nodiscard]] J2Plasticity plasticity() const noexcept {
     TableHardening hardening;
@@ -130,7 +155,7 @@ struct J2Table : J2Law {
 
 /// Y = (a + b ep^n) (1 + c ln(rate/reference_rate)): G. R. Johnson, W. H. Cook, A constitutive model and data for
 /// metals subjected to large strains, high strain rates and high temperatures, 7th International Symposium on
-/// Ballistics, 1983, 541-547, without the dependence on temperature.
+/// Ballistics, 1983, 541-547; the dependence on temperature is `heating`, which all these laws may have.
 struct JohnsonCook : J2Power {
   static constexpr std::string_view kind = "johnson_cook";
   static constexpr auto fields =
@@ -140,7 +165,8 @@ struct JohnsonCook : J2Power {
                                non_negative, Presence::required},
                          Field{"reference_rate", "1/time", "Rate of strain up to which the yield stress is a + b ep^n.",
                                &J2Law::reference_rate, positive, Presence::required},
-                     });
+                     },
+                     J2Law::condition_fields);
 };
 
 static_assert(PlaneStressMaterial<J2Linear> && PlaneStressMaterial<J2Power> && PlaneStressMaterial<J2Table> &&

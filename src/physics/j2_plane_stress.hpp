@@ -116,11 +116,11 @@ struct J2Search {
 /// `after(increment, slope)` for an increment of the effective plastic strain; without corners where `Smooth`.
 template <bool Smooth, class T, class Yield>
 [[nodiscard]] FEXP_INLINE J2Return<T> return_to_yield(const J2Elasticity& c, const PlaneTensor<T>& trial,
-                                                      double least_stress, const Yield& yield_stress) noexcept {
+                                                      const T& least_stress, const Yield& yield_stress) noexcept {
   const J2Return<T> nothing{T(1.0), T(1.0), T(0.0), T(0.0), T(0.0)};
   const T a = T(0.25) * (trial.sum * trial.sum);
   const T b = T(0.75) * (trial.difference * trial.difference) + T(3.0) * (trial.shear * trial.shear);
-  if (!any_less(T(least_stress * least_stress), a + b)) {
+  if (!any_less(least_stress * least_stress, a + b)) {
     return nothing;
   }
   const auto yield = yield_stress();

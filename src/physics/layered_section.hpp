@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/inline.hpp"
 #include "physics/hardening.hpp"
 #include "physics/plane_stress_material.hpp"
 #include "physics/through_thickness.hpp"
@@ -23,14 +24,6 @@ struct J2Elasticity {
   }
 };
 
-/// What the kernels need of such a section; no points: the section is elastic.
-struct LayeredSection {
-  ThroughThickness points;
-  PlaneStressModuli moduli;
-  J2Elasticity elasticity;
-  J2Plasticity plasticity;
-};
-
 /// Rows of the history of a layered element; each of its points has PointRow from layer_points on.
 enum LayerRow : int {
   layer_thickness,    // Present thickness [length]
@@ -46,8 +39,28 @@ enum PointRow : int {
   point_rows
 };
 
-[[nodiscard]] constexpr int layer_rows(int points) noexcept {
-  return points == 0 ? 0 : layer_points + points * point_rows;
-}
+/// What the kernels need of such a section; no points: the section is elastic.
+struct LayeredSection {
+  ThroughThickness points;
+  PlaneStressModuli moduli;
+  J2Elasticity elasticity;
+  J2Plasticity plasticity;
+
+  /// Whether points have more to remember than PointRow, or another law of the rate than Johnson and Cook's.
+  [[nodiscard]] FEXP_INLINE constexpr bool has_conditions() const noexcept {
+    return plasticity.heat.heats() || plasticity.rate.filters() || plasticity.rate.inverse_exponent > 0.0;
+  }
+  /// Behind PointRow of all points come their temperatures [temperature] where they heat, and then their filtered rates
+  /// of strain [1/time] where these are filtered.
+  [[nodiscard]] FEXP_INLINE constexpr int temperature_row(int point) const noexcept {
+    return layer_points + points.count * point_rows + point;
+  }
+  [[nodiscard]] FEXP_INLINE constexpr int rate_row(int point) const noexcept {
+    return temperature_row(plasticity.heat.heats() ? points.count : 0) + point;
+  }
+  [[nodiscard]] constexpr int rows() const noexcept {
+    return points.count == 0 ? 0 : rate_row(plasticity.rate.filters() ? points.count : 0);
+  }
+};
 
 }  // namespace fexp::physics

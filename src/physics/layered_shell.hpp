@@ -37,7 +37,7 @@ struct LayerStep {
   J2Elasticity elasticity;
   double membrane_modulus;  ///< Of xx + yy [force/length^2]
   double shear_modulus;     ///< [force/length^2]
-  double half_sensitivity;  ///< Of the rate, for a binary logarithm of its square [-]
+  RateDependence rate;
   /// What squared increments of strain are multiplied by to be squared rates over the squared reference rate.
   double inverse_rate;
   MaterialTurn<T> turn;
@@ -46,8 +46,8 @@ struct LayerStep {
       : elasticity(section.elasticity),
         membrane_modulus(section.moduli.direct + section.moduli.cross),
         shear_modulus(section.moduli.shear),
-        half_sensitivity(0.5 * ln2 * section.plasticity.rate_sensitivity),
-        inverse_rate(1.0 / (3.0 * (dt * section.plasticity.reference_rate) * (dt * section.plasticity.reference_rate))),
+        rate(section.plasticity.rate),
+        inverse_rate(1.0 / (3.0 * (dt * rate.reference) * (dt * rate.reference))),
         turn(gxy) {}
 
   /// Stress as if the increments were elastic; it turns with the material as MaterialTurn::turn_tensor says.
@@ -65,27 +65,24 @@ struct LayerStep {
             old.shear + (added_shear - (sheared + sheared))};
   }
 
-  /// Factor on the yield stress, from the effective rate of the whole strain without change of volume, squared
-  /// 4/3 (exx^2 + exx eyy + eyy^2 + gxy^2/4).
-  [[nodiscard]] FEXP_INLINE T rate_factor(const PlaneTensor<T>& strain) const noexcept {
-    if (!(half_sensitivity > 0.0)) {
-      return T(1.0);
-    }
+  /// Effective rate of the whole strain without change of volume, 4/3 (exx^2 + exx eyy + eyy^2 + gxy^2/4), over the
+  /// square of the reference rate.
+  [[nodiscard]] FEXP_INLINE T squared_rate(const PlaneTensor<T>& strain) const noexcept {
     const T squares =
         T(3.0) * (strain.sum * strain.sum) + (strain.difference * strain.difference + strain.shear * strain.shear);
-    return T(1.0) + T(half_sensitivity) * binary_log(maximum(squares * T(inverse_rate), T(1.0)));
+    return squares * T(inverse_rate);
   }
 };
 
-/// A yield stress times the factor of the rate.
+/// A yield stress times the factor of rate and temperature.
 template <class T, class Curve>
 struct RatedYield {
   YieldStress<T, Curve> still;
   T factor;
   T stress, slope;
 
-  FEXP_INLINE RatedYield(const YieldStress<T, Curve>& at_rest, const T& rate_factor) noexcept
-      : still(at_rest), factor(rate_factor), stress(factor * still.stress), slope(factor * still.slope) {}
+  FEXP_INLINE RatedYield(const YieldStress<T, Curve>& at_rest, const T& by) noexcept
+      : still(at_rest), factor(by), stress(factor * still.stress), slope(factor * still.slope) {}
   [[nodiscard]] FEXP_INLINE T after(const T& increment, T& derivative) const noexcept {
     const T value = still.after(increment, derivative);
     derivative = factor * derivative;
@@ -93,20 +90,85 @@ struct RatedYield {
   }
 };
 
-/// Stress of a point after its strain increment.
-template <class T, class Curve>
+/// Stress of a point after its strain increment. Its yield stress is that of the curve times `factor()`, which is asked
+/// for only where the trial stress may be beyond it, and nowhere less than `least_stress`.
+template <class T, class Curve, class Factor>
 FEXP_INLINE PointChange<T> update_point(const LayerStep<T>& step, const Curve& curve, const PlaneTensor<T>& strain,
-                                        LayerPoint<T>& p) noexcept {
+                                        const T& least_stress, const Factor& factor, LayerPoint<T>& p) noexcept {
   const PlaneTensor<T> trial = step.trial(p.stress, strain);
   const T before = p.strain, old_sum = p.stress.sum;
-  const J2Return<T> r = return_to_yield<Curve::smooth>(step.elasticity, trial, curve.least(), [&] {
-    return RatedYield<T, Curve>(YieldStress<T, Curve>(curve, before), step.rate_factor(strain));
+  const J2Return<T> r = return_to_yield<Curve::smooth>(step.elasticity, trial, least_stress, [&] {
+    return RatedYield<T, Curve>(YieldStress<T, Curve>(curve, before), factor());
   });
   p.stress = {r.mean_factor * trial.sum, r.deviator_factor * trial.difference, r.deviator_factor * trial.shear};
   p.strain = before + r.strain;
   return {T(step.elasticity.transverse) * (p.stress.sum - old_sum) + r.transverse_strain * p.stress.sum,
           r.stress * r.strain};
 }
+
+/// The same where the section has no conditions.
+template <class T, class Curve>
+FEXP_INLINE PointChange<T> update_point(const LayerStep<T>& step, const Curve& curve, const PlaneTensor<T>& strain,
+                                        LayerPoint<T>& p) noexcept {
+  return update_point(
+      step, curve, strain, T(curve.least()), [&] { return step.rate.johnson_cook(step.squared_rate(strain)); }, p);
+}
+
+/// What else the yield stress of a point depends on.
+template <class T>
+struct PointConditions {
+  T temperature;  ///< [temperature]
+  T rate;         ///< Of strain, filtered [1/time]
+};
+
+/// What a step does with the conditions of the points of a section.
+struct ConditionStep {
+  ThermalSoftening heat;
+  bool filters;
+  double filter_weight;
+  double rate_unit;  ///< Reference rate [1/time]
+
+  FEXP_INLINE ConditionStep(const J2Plasticity& plasticity, double dt) noexcept
+      : heat(plasticity.heat),
+        filters(plasticity.rate.filters()),
+        filter_weight(filters ? plasticity.rate.filter_weight(dt) : 1.0),
+        rate_unit(plasticity.rate.reference) {}
+
+  /// Stress, temperature and filtered rate of a point after its strain increment. The yield stress is that of the
+  /// temperature at the step's start, so that it does not fall while it is looked for.
+  template <class T, class Curve>
+  FEXP_INLINE PointChange<T> update(const LayerStep<T>& step, const Curve& curve, const PlaneTensor<T>& strain,
+                                    LayerPoint<T>& p, PointConditions<T>& conditions) const noexcept {
+    T square = step.squared_rate(strain);
+    if (filters) {
+      conditions.rate = conditions.rate + T(filter_weight) * (T(rate_unit) * square_root(square) - conditions.rate);
+      const T ratio = conditions.rate * T(1.0 / rate_unit);
+      square = ratio * ratio;
+    }
+    const T softening = heat.heats() ? heat.factor(conditions.temperature) : T(1.0);
+    const T least = T(curve.least()) * softening;
+    return update_point(
+        step, curve, strain, least, [&] { return step.rate.factor(square) * softening; }, p);
+  }
+
+  template <class Load>
+  [[nodiscard]] FEXP_INLINE auto load(const LayeredSection& section, int point, const Load& load_row) const noexcept {
+    using T = decltype(load_row(0));
+    return PointConditions<T>{heat.heats() ? load_row(section.temperature_row(point)) : T(0.0),
+                              filters ? load_row(section.rate_row(point)) : T(0.0)};
+  }
+  /// What has become of them; the plastic work of the step heats.
+  template <class T, class Store>
+  FEXP_INLINE void store(const LayeredSection& section, int point, const PointConditions<T>& conditions,
+                         const PointChange<T>& change, const Store& store_row) const noexcept {
+    if (heat.heats()) {
+      store_row(section.temperature_row(point), conditions.temperature + T(heat.heating) * change.plastic_work);
+    }
+    if (filters) {
+      store_row(section.rate_row(point), conditions.rate);
+    }
+  }
+};
 
 /// A point whose strain has reached the failure strain carries nothing from then on; `before` is its strain at the
 /// step's start. Returns 1 where it has failed, else 0.
@@ -154,8 +216,8 @@ struct LayerSums {
 };
 
 /// Resultants of a layered element after a step dt > 0; `load(r)` and `store(r, value)` read and write row r of its
-/// history.
-template <class T, class Curve, class Load, class Store>
+/// history. `Conditions` as LayeredSection::has_conditions.
+template <bool Conditions = false, class T, class Curve, class Load, class Store>
 FEXP_INLINE void update_layered(const ShellStiffness& s, const LayeredSection& section, const Curve& curve, double dt,
                                 const T& area, const ShellIncrement<T>& e, const Load& load, const Store& store,
                                 ShellResultants<T>& r) noexcept {
@@ -166,19 +228,29 @@ FEXP_INLINE void update_layered(const ShellStiffness& s, const LayeredSection& s
   const PlaneTensor<T> membrane{e.exx + e.eyy, e.exx - e.eyy, e.gxy};
   const PlaneTensor<T> curvature{e.kxx + e.kyy, e.kxx - e.kyy, e.kxy};
   LayerSums<T> sums;
+  [[maybe_unused]] const ConditionStep point_conditions(section.plasticity, dt);
   for (int i = 0; i < section.points.count; ++i) {
     const double position = section.points.position[static_cast<std::size_t>(i)];
     const int row = layer_points + i * point_rows;
     LayerPoint<T> p{{load(row + point_sum), load(row + point_difference), load(row + point_shear)},
                     load(row + point_strain)};
     const T z = half_thickness * T(position), before = p.strain;
-    PointChange<T> change =
-        update_point(step, curve,
-                     {membrane.sum + z * curvature.sum, membrane.difference + z * curvature.difference,
-                      membrane.shear + z * curvature.shear},
-                     p);
+    const PlaneTensor<T> strain{membrane.sum + z * curvature.sum, membrane.difference + z * curvature.difference,
+                                membrane.shear + z * curvature.shear};
+    PointConditions<T> conditions{T(0.0), T(0.0)};
+    PointChange<T> change{T(0.0), T(0.0)};
+    if constexpr (Conditions) {
+      conditions = point_conditions.load(section, i, load);
+      change = point_conditions.update(step, curve, strain, p, conditions);
+    } else {
+      change = update_point(step, curve, strain, p);
+    }
     if (can_fail) {
       sums.failed = minimum(sums.failed, let_fail(failure_strain, before, p, change));
+      conditions.rate = select_less(p.strain, T(failure_strain), conditions.rate, T(0.0));
+    }
+    if constexpr (Conditions) {
+      point_conditions.store(section, i, conditions, change, store);
     }
     store(row + point_sum, p.stress.sum);
     store(row + point_difference, p.stress.difference);

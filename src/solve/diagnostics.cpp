@@ -163,10 +163,15 @@ CriticalStep body_critical_step(const model::Model& model, const model::State& s
     return {std::min(model.first_critical_step, turn), model.bodies[at(body)].elements.begin};
   }
   const StepKernel kernel = select_element_kernel(KernelChoice::automatic).steps;
-  const StepKernelArguments arguments{
-      state.motion.data(),   model.triangle.data(), model.blocks.data(),
-      model.sections.data(), model.run.drilling,    model.step_factor.empty() ? nullptr : model.step_factor.data(),
-      state.layers.data()};
+  const StepKernelArguments arguments{state.motion.data(),
+                                      model.triangle.data(),
+                                      model.blocks.data(),
+                                      model.sections.data(),
+                                      model.run.drilling,
+                                      model.step_factor.empty() ? nullptr : model.step_factor.data(),
+                                      state.layers.data(),
+                                      model.reference_area.data(),
+                                      model.run.stiffness_damping > 0.0};
   CriticalStep smallest = parallel::ordered_fold(
       model.bodies[at(body)].blocks, piece / model::block_lanes, CriticalStep{},
       [&](Index begin, Index end) { return kernel(arguments, begin, end); }, smaller);

@@ -89,6 +89,9 @@ struct StepKernelArguments {
   double drilling{};                       ///< Drilling factor beta [-]
   const double* step_factor{};             // [elements]: by which mass scaling lengthens the step; none: by nothing
   const double* layers{};                  // As those of the element kernel; deleted elements have no step
+  const double* reference_area{};          // [elements] [length^2]; read for layered blocks
+  /// With stiffness damping, which has the thickness of the deck, thinner elements count as of that thickness.
+  bool damped{};
 };
 
 /// Smallest critical step over blocks [begin, end) in the present geometry.

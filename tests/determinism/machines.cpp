@@ -31,6 +31,7 @@ const std::vector<Scene>& scenes() {
                                       {"plates_at_rest", test::plates_at_rest, 0.05},
                                       {"plates_that_stop", test::plates_that_stop, 0.4},
                                       {"metals", test::metals, 0.06},
+                                      {"hot_metals", test::hot_metals, 0.06},
                                       {"shot", test::shot, 0.06},
                                       {"damped_shot", test::damped_shot, 0.06},
                                       {"rigid_and_soft", test::rigid_and_soft, 0.12},

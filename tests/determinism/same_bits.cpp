@@ -48,6 +48,10 @@ const std::vector<Scene>& scenes() {
        [](const test::Outcome& o) { return o.stops > 3 && o.extremes.most_active_pairs > 5; }},
       {"metals", test::metals, 0.06,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.plastic_strain > 0.1; }},
+      {"hot_metals", test::hot_metals, 0.06,
+       [](const test::Outcome& o) {
+         return o.extremes.most_active_pairs > 5 && o.plastic_strain > 0.1 && o.temperature > 5.0;
+       }},
       {"shot", test::shot, 0.04,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 5 && o.deleted > 9; }},
       {"damped_shot", test::damped_shot, 0.04,

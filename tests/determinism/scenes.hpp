@@ -180,6 +180,21 @@ inline model::Description metals() {
   return d;
 }
 
+/// The same of metals that heat, with rates that are filtered; one half of the plate melts and fails where it is hit.
+inline model::Description hot_metals() {
+  model::Description d = metals();
+  auto& fast = std::get<physics::JohnsonCook>(d.materials[0].law);
+  fast.heating = physics::AdiabaticHeating{1.0, 20.0, 0.0, 1.0, 1.1};
+  fast.rate_cutoff = 50.0;
+  auto& table = std::get<physics::J2Table>(d.materials[1].law);
+  table.heating = physics::AdiabaticHeating{0.1, 10.0, 0.0, 0.0};
+  table.failure_strain = 0.3;
+  auto& linear = std::get<physics::J2Linear>(d.materials[2].law);
+  linear.cowper_symonds = physics::CowperSymonds{10.0, 4.0};
+  linear.rate_cutoff = 200.0;
+  return d;
+}
+
 /// A ball of metal that is shot through a plate, whose elements fail and are deleted, and meets itself.
 inline model::Description shot() {
   model::Description d = with_contact(0.01);
@@ -353,6 +368,7 @@ struct Outcome {
   std::vector<solve::HashRecord> hashes;
   cluster::RunExtremes extremes;
   double plastic_strain{};  ///< Largest at the end [-]
+  double temperature{};     ///< Likewise [temperature]
   Index deleted{};          ///< At the end
   double damping{};         ///< Energy that stiffness damping has taken in all
   int stops{};              ///< Epochs after which motion was stopped
@@ -381,7 +397,12 @@ inline Outcome run_scene(const model::Model& model, double duration, solve::Kern
   for (Index e = 0; e < model.element_count(); ++e) {
     outcome.damping += model.run.stiffness_damping > 0.0 ? model::damping_work(model, simulation.state(), e) : 0.0;
     outcome.deleted += model::is_deleted(model, simulation.state().layers.data(), e) ? 1 : 0;
-    for (Index p = 0; p < model.section_of(e).layered.points.count; ++p) {
+    const physics::LayeredSection& section = model.section_of(e).layered;
+    for (Index p = 0; p < section.points.count; ++p) {
+      if (section.plasticity.heat.heats()) {
+        outcome.temperature =
+            std::max(outcome.temperature, model::layer_value(model, simulation.state(), e, section.temperature_row(p)));
+      }
       const Index row = physics::layer_points + p * physics::point_rows + physics::point_strain;
       outcome.plastic_strain = std::max(outcome.plastic_strain, model::layer_value(model, simulation.state(), e, row));
     }

@@ -58,6 +58,7 @@ class Expected:
             "energy_density": row[:, 11] / (self.area * t),
             "thickness": np.full(self.elements, t),
             "plastic_strain": np.zeros(self.elements),
+            "temperature": np.zeros(self.elements),
             "deleted": np.zeros(self.elements),
             "body": self.body,
             "island": self.body // 2,

@@ -124,6 +124,39 @@ TEST(build_errors, hardening_as_stiff_as_the_elastic_material_is_refused) {
   expect_one(errors_of(d), {"tangent_modulus is 2, young is 2", "less than young"});
 }
 
+TEST(build_errors, two_laws_of_the_rate_and_a_filter_without_any_are_refused) {
+  Description d = good();
+  d.materials[0].place = line_7;
+  physics::J2Linear law{{1.0, 2.0, 0.3}, 1.0, 0.0};
+  const auto errors_with = [&] {
+    d.materials[0].law = law;
+    return errors_of(d);
+  };
+  law.rate_cutoff = 3.0;
+  expect_one(errors_with(), {"rate_cutoff is 3", "does not depend on the rate", "cowper_symonds"});
+  law.cowper_symonds = physics::CowperSymonds{40.0, 5.0};
+  EXPECT_TRUE(errors_with().empty());
+  law.rate_sensitivity = 0.1;
+  expect_one(errors_with(), {"both cowper_symonds and a rate_sensitivity of 0.1", "one law of the rate"});
+  law.cowper_symonds.reset();
+  EXPECT_TRUE(errors_with().empty());
+}
+
+TEST(build_errors, metals_that_have_melted_at_the_start_are_refused) {
+  Description d = good();
+  d.materials[0].place = line_7;
+  physics::J2Linear law{{1.0, 2.0, 0.3}, 1.0, 0.0};
+  const auto errors_with = [&](double reference, double initial) {
+    law.heating = physics::AdiabaticHeating{1.0, 900.0, reference, initial};
+    d.materials[0].law = law;
+    return errors_of(d);
+  };
+  EXPECT_TRUE(errors_with(300.0, 899.0).empty());
+  EXPECT_TRUE(errors_with(300.0, -10.0).empty()) << "colder than the reference";
+  expect_one(errors_with(900.0, 300.0), {"reference_temperature is 900", "melting_temperature is 900", "below"});
+  expect_one(errors_with(300.0, 901.0), {"initial_temperature is 901", "melting_temperature is 900", "below"});
+}
+
 TEST(build_errors, points_through_the_thickness_that_no_rule_has_are_refused) {
   Description d = good();
   d.sections[0].place = line_7;

@@ -53,6 +53,11 @@ struct RandomPlate {
         }
         row(first + physics::point_strain) = e % 3 == 0 ? 0.0 : 0.1 * (1.0 + unit(random));
       }
+      // From colder than the reference temperature to beyond melting, then rates.
+      const physics::LayeredSection& section = model.sections[0].layered;
+      for (Index r = section.temperature_row(0); r < section.rows(); ++r) {
+        row(r) = 1000.0 * (1.0 + unit(random));
+      }
     }
     for (const model::SectionData& section : model.sections) {
       sections.emplace_back(physics::ShellSection{section.thickness, section.moduli, 0.1});
@@ -139,10 +144,33 @@ std::vector<physics::AnyMaterial> laws() {
           physics::J2Power{metal, 2e8, 3e8, 0.4}, table, johnson_cook};
 }
 
-TEST(element_kernels, of_every_width_give_the_bits_of_the_scalar_one_with_every_law) {
-  static_assert(std::variant_size_v<physics::AnyMaterial> == 5, "laws() has all of them");
-  for (int k = 0; k < 2 * static_cast<int>(laws().size()); ++k) {
-    const physics::AnyMaterial law = laws()[static_cast<std::size_t>(k / 2)];
+/// The same, the plastic ones with heating, a filter of the rate, or both, and some that fail.
+std::vector<physics::AnyMaterial> laws_with_conditions() {
+  std::vector<physics::AnyMaterial> all = laws();
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    std::visit(
+        [i](auto& law) {
+          if constexpr (requires { law.heating; }) {
+            if (i != 1) {
+              law.heating = physics::AdiabaticHeating{477.0, 1793.0, 293.0, 300.0, 1.03, 0.9};
+            }
+            law.rate_cutoff = i == 2 ? 0.0 : 1e4;
+            law.failure_strain = i >= 3 ? 0.15 : -1.0;
+            if (i == 3) {
+              law.rate_sensitivity = 0.0;
+              law.cowper_symonds = physics::CowperSymonds{40.0, 5.0};
+            }
+          }
+        },
+        all[i]);
+  }
+  all.erase(all.begin());
+  return all;
+}
+
+void expect_same_bits_by_every_kernel(const std::vector<physics::AnyMaterial>& all) {
+  for (std::size_t k = 0; k < 2 * all.size(); ++k) {
+    const physics::AnyMaterial law = all[k / 2];
     const bool damped = k % 2 == 1;
     SCOPED_TRACE(std::to_string(law.index()) + (damped ? " damped" : ""));
     RandomPlate scalar(law);
@@ -166,6 +194,18 @@ TEST(element_kernels, of_every_width_give_the_bits_of_the_scalar_one_with_every_
       EXPECT_EQ(differences(scalar, packed), 0) << kernel.name;
     }
   }
+}
+
+TEST(element_kernels, of_every_width_give_the_bits_of_the_scalar_one_with_every_law) {
+  static_assert(std::variant_size_v<physics::AnyMaterial> == 5, "laws() has all of them");
+  expect_same_bits_by_every_kernel(laws());
+}
+
+TEST(element_kernels, of_every_width_give_the_bits_of_the_scalar_one_with_heat_and_filters) {
+  for (const physics::AnyMaterial& law : laws_with_conditions()) {
+    ASSERT_TRUE(RandomPlate(law).model.sections[0].layered.has_conditions());
+  }
+  expect_same_bits_by_every_kernel(laws_with_conditions());
 }
 
 /// Forces of several elements on a node are those of each alone, added in their order.

@@ -29,11 +29,12 @@ TEST(history, header_has_names_and_units) {
 }
 
 TEST(history, units_are_the_users_where_given_and_dimensions_elsewhere) {
-  const io::UnitNames units{.length = "mm", .time = "ms", .mass = "", .force = "kN"};
+  const io::UnitNames units{.length = "mm", .time = "ms", .mass = "", .force = "kN", .temperature = "K"};
   EXPECT_EQ(units.of("force/length^2"), "kN/mm^2");
   EXPECT_EQ(units.of("force*length*time"), "kN*mm*ms");
   EXPECT_EQ(units.of("1/time"), "1/ms");
   EXPECT_EQ(units.of("mass*length/time^2"), "mass*mm/ms^2");
+  EXPECT_EQ(units.of("temperature"), "K");
   EXPECT_EQ(units.of("-"), "-");
   EXPECT_EQ(io::UnitNames{}.of("length/time"), "length/time");
 }

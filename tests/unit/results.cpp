@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "io/atomic_file.hpp"
 #include "io/output_error.hpp"
@@ -17,6 +18,7 @@
 #include "model/capture.hpp"
 #include "model/element_stresses.hpp"
 #include "parallel/parallel.hpp"
+#include "support/descriptions.hpp"
 #include "support/file_size_limit.hpp"
 #include "support/hand_model.hpp"
 #include "support/temporary_directory.hpp"
@@ -83,6 +85,27 @@ TEST(element_stresses, are_membrane_and_bending_on_both_sides) {
   EXPECT_EQ(stresses.thickness, t);
   EXPECT_EQ(stresses.plastic_strain, 0.0);
   EXPECT_FALSE(stresses.deleted);
+}
+
+/// Of points that heat, wherever the hottest is; elements that do not heat have none.
+TEST(element_stresses, have_the_highest_temperature_of_the_points) {
+  model::Description d = test::description(test::steel, 0.01);
+  physics::J2Linear law{{7850.0, 2.1e11, 0.3}, 250e6, 2e9};
+  test::add_body(d, "plate", model::Plate{1.0, 1.0, 1, 1, "one"});
+  d.materials[0].law = law;
+  const model::Model cold = test::build(d);
+  EXPECT_EQ(model::element_stresses(cold, model::initial_state(cold), 0).temperature, 0.0);
+  law.heating = physics::AdiabaticHeating{477.0, 1793.0, -20.0, -30.0};
+  d.materials[0].law = law;
+  const model::Model hot = test::build(d);
+  model::State state = model::initial_state(hot);
+  EXPECT_EQ(model::element_stresses(hot, state, 1).temperature, -30.0);
+  for (const int point : {0, 2, 4}) {
+    const Index row = hot.blocks[0].layer_row + hot.sections[0].layered.temperature_row(point);
+    state.layers[at(row) * at(model::block_lanes)] = -25.0 + point;
+    EXPECT_EQ(model::element_stresses(hot, state, 0).temperature, -25.0 + point);
+  }
+  EXPECT_EQ(model::capture(hot, state, {}, {}).temperature, (std::vector<float>{-21.0F, -30.0F}));
 }
 
 TEST(capture, von_mises_of_pure_shear_is_root_three_times_the_shear) {

@@ -335,13 +335,41 @@ TEST(state_bytes, books_that_the_body_cannot_keep_are_refused) {
 TEST(state_bytes, layers_begin_with_the_thickness_alone) {
   const Model m = two_plastic_plates();
   const State s = initial_state(m);
-  const Index rows = physics::layer_rows(2);
+  const Index rows = m.sections[0].layer_rows();
   ASSERT_EQ(s.layers.size(), at(6 * rows * block_lanes));
   for (Index e = 0; e < m.element_count(); ++e) {
     for (Index row = 0; row < rows; ++row) {
       EXPECT_EQ(layer_value(m, s, e, row), row == physics::layer_thickness ? 0.01 : 0.0);
     }
   }
+}
+
+TEST(state_bytes, points_begin_at_their_temperature_and_without_a_rate) {
+  Description d = test::description(steel, 0.01);
+  physics::J2Linear law{{7850.0, 2.1e11, 0.3, 0.01}, 250e6, 2e9};
+  law.heating = physics::AdiabaticHeating{477.0, 1793.0, 293.0, 350.0};
+  law.rate_cutoff = 1e3;
+  d.materials[0].law = law;
+  d.sections[0].points = 2;
+  test::add_body(d, "p", Plate{1.0, 1.0, 3, 3, "one"});
+  const Model m = test::build(d);
+  State s = initial_state(m);
+  const physics::LayeredSection& section = m.sections[0].layered;
+  ASSERT_EQ(section.rows(), physics::layer_points + 2 * (physics::point_rows + 2));
+  for (Index e = 0; e < m.element_count(); ++e) {
+    for (Index row = physics::layer_points; row < section.rows(); ++row) {
+      const bool is_temperature = row == section.temperature_row(0) || row == section.temperature_row(1);
+      EXPECT_EQ(layer_value(m, s, e, row), is_temperature ? 350.0 : 0.0);
+    }
+  }
+  const std::uint64_t before = state_hash(m, s);
+  for (const Index row : {section.temperature_row(1), section.rate_row(0)}) {
+    double& value = s.layers[at(m.blocks[0].layer_row + row) * at(block_lanes)];
+    value += 1.0;
+    EXPECT_NE(state_hash(m, s), before) << "both are part of the canonical bytes";
+    value -= 1.0;
+  }
+  EXPECT_EQ(state_hash(m, s), before);
 }
 
 TEST(state_bytes, layers_follow_the_rows_of_their_block) {
@@ -375,7 +403,7 @@ TEST(state_bytes, layers_are_read_back_copied_and_hashed_with_their_body) {
   }
   const std::uint64_t before = state_hash(m, from);
   for (const ElementBlock& block : m.blocks) {
-    for (Index row = 0; row < physics::layer_rows(2); ++row) {
+    for (Index row = 0; row < m.sections[0].layer_rows(); ++row) {
       for (Index lane = 0; lane < block_lanes; ++lane) {
         State changed = from;
         double& value = changed.layers[(at(block.layer_row) + at(row)) * at(block_lanes) + at(lane)];

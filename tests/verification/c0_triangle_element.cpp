@@ -18,6 +18,7 @@ using fexp::Vec3d;
 using fexp::physics::ShellIncrement;
 using fexp::physics::ShellResultants;
 using fexp::physics::ShellSection;
+using fexp::physics::ShellStiffness;
 using fexp::physics::TriangleFrame;
 using fexp::test::verify;
 using Corners = std::array<Vec3d, 3>;
@@ -190,7 +191,7 @@ TEST(c0_triangle, constant_transverse_shear_is_exact) {
 using Matrix18 = std::array<std::array<double, 18>, 18>;
 
 /// Stiffness of one element, column by column from unit velocities.
-Matrix18 element_stiffness(const ShellSection& section, const Corners& x) {
+Matrix18 element_stiffness(const ShellStiffness& section, const Corners& x) {
   const auto frame = frame_of(x);
   Matrix18 k{};
   for (std::size_t j = 0; j < 18; ++j) {
@@ -275,10 +276,10 @@ TEST(c0_triangle, stiffness_is_symmetric_and_does_not_depend_on_the_first_corner
   verify({"4", "one element", "change of K by renumbering", 0, change / largest, 1e-15, false, "exact"});
 }
 
-/// Critical step 2/omega of one free element from all 18 degrees of freedom.
-double exact_critical_step(const ShellSection& section, double density, const Corners& x) {
-  Matrix18 k = element_stiffness(section, x);
-  const double area = 0.5 * frame_of(x).doubled_area;
+/// Critical step 2/omega of one free element from all 18 degrees of freedom, with the mass of a section and an area.
+double exact_critical_step(const ShellStiffness& stiffness, const ShellSection& section, double density, double area,
+                           const Corners& x) {
+  Matrix18 k = element_stiffness(stiffness, x);
   const double mass = fexp::physics::corner_mass(density, section.thickness, area);
   const double inertia = fexp::physics::corner_inertia(mass, section.thickness, area);
   for (std::size_t i = 0; i < 18; ++i) {
@@ -287,6 +288,10 @@ double exact_critical_step(const ShellSection& section, double density, const Co
     }
   }
   return 2.0 / std::sqrt(eigenvalues(k).back());
+}
+
+double exact_critical_step(const ShellSection& section, double density, const Corners& x) {
+  return exact_critical_step(section, section, density, 0.5 * frame_of(x).doubled_area, x);
 }
 
 TEST(critical_step, of_a_thin_right_isosceles_triangle_is_the_exact_one) {
@@ -325,6 +330,43 @@ TEST(critical_step, is_safe_and_close_for_triangles_of_any_shape) {
   EXPECT_LE(boldest, 1.0 + 1e-12);
   verify(
       {"9", "2000 random triangles", "smallest bound / exact step", 1.0, shyest, 0.03, true, "18 degrees of freedom"});
+}
+
+/// Elements that have become thicker or thinner, larger or smaller: membrane and bending have their present thickness,
+/// the mass is what it was.
+TEST(critical_step, is_safe_and_close_for_elements_whose_thickness_has_changed) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  double boldest = 0.0, shyest = 1.0, boldest_before = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    Corners x;
+    for (Vec3d& corner : x) {
+      corner = {unit(random), unit(random), unit(random)};
+    }
+    const double area = 0.5 * frame_of(x).doubled_area, growth = std::pow(2.0, unit(random));
+    const double reference_area = area * growth * std::pow(1.05, unit(random));  // Elastic volume
+    const double before = 3.0 * std::sqrt(reference_area) * std::pow(10.0, -1.5 * (1.0 + unit(random)));
+    const fexp::physics::LinearElastic law{1.0, 1.0, 0.24 + 0.24 * unit(random)};
+    const ShellSection section{before, law.moduli(), 0.5 * (1.0 + unit(random))};
+    const double now = before * growth;
+    ShellStiffness stiffness(section);
+    stiffness.membrane = ShellStiffness(ShellSection{now, law.moduli(), 0.0}).membrane;
+    stiffness.bending = ShellStiffness(ShellSection{now, law.moduli(), 0.0}).bending;
+    const double exact = exact_critical_step(stiffness, section, law.density, reference_area, x);
+    const double ratio =
+        fexp::physics::layered_critical_step(section, law.density, now, reference_area, frame_of(x)) / exact;
+    boldest = std::max(boldest, ratio);
+    shyest = std::min(shyest, ratio);
+    boldest_before =
+        std::max(boldest_before, fexp::physics::element_critical_step(section, law.density, frame_of(x)) / exact);
+    EXPECT_EQ(fexp::physics::layered_critical_step(section, law.density, before, area, frame_of(x)),
+              fexp::physics::element_critical_step(section, law.density, frame_of(x)))
+        << "the same as long as nothing has changed";
+  }
+  EXPECT_LE(boldest, 1.0 + 1e-12);
+  EXPECT_GT(boldest_before, 1.02) << "the thickness of the deck would not do";
+  verify({"74", "2000 triangles, thickness changed", "smallest bound / exact step", 1.0, shyest, 0.2, true,
+          "18 degrees of freedom"});
 }
 
 TEST(c0_triangle, finite_rigid_rotation_in_one_step_gives_no_strain) {

@@ -11,22 +11,11 @@
 #include "physics/layered_shell.hpp"
 #include "physics/shell_damping.hpp"
 #include "solve/kernels.hpp"
+#include "solve/kernels/lanes.hpp"
 
 namespace fexp::solve::kernels {
 
 using model::block_lanes;
-
-/// Lane access that reads the same for double and for packs.
-template <class T>
-struct Lanes {
-  static T load(const double* p) noexcept { return T::load(p); }
-  static void store(const T& v, double* p) noexcept { v.store(p); }
-};
-template <>
-struct Lanes<double> {
-  static double load(const double* p) noexcept { return *p; }
-  static void store(const double& v, double* p) noexcept { *p = v; }
-};
 
 /// Rows of what an element needs of its corners' motion: sides 1-2 and 1-3 at the end of the step [length], velocities
 /// of corners 2 and 3 relative to 1 [length/time], rotation rates [1/time].
@@ -171,8 +160,9 @@ struct ElasticLaw {
   FEXP_INLINE void finish(Index, std::array<std::array<T, 6>, 3>&) const noexcept {}
 };
 
-/// A section with points through the thickness, which harden by `curve`; `layers` are the block's rows.
-template <class Curve>
+/// A section with points through the thickness, which harden by `curve` and have conditions or none; `layers` are the
+/// block's rows.
+template <class Curve, bool Conditions>
 struct LayeredLaw {
   const physics::ShellStiffness& stiffness;
   const physics::LayeredSection& section;
@@ -187,7 +177,7 @@ struct LayeredLaw {
       const auto store = [&](int row, const T& value) {
         Lanes<T>::store(value, layers + at(row) * block_lanes + first);
       };
-      physics::update_layered(stiffness, section, curve, dt, area, increment, load, store, resultants);
+      physics::update_layered<Conditions>(stiffness, section, curve, dt, area, increment, load, store, resultants);
     }
   }
   template <class T>
@@ -302,23 +292,30 @@ FEXP_INLINE void update_block_by(const ElementKernelArguments& k, Index index, c
 }
 
 /// Not inlined, to leave the loop over elastic blocks as small as it is.
-template <class T, bool Damped>
-[[gnu::noinline]] void update_layered_block(const ElementKernelArguments& k, Index index,
-                                            const double* motion) noexcept {
+template <class T, bool Damped, bool Conditions>
+[[gnu::noinline]] void update_points_of_block(const ElementKernelArguments& k, Index index,
+                                              const double* motion) noexcept {
   const model::ElementBlock& block = k.blocks[index];
   const physics::LayeredSection& section = k.section_data[block.section].layered;
   const physics::ShellStiffness& stiffness = k.sections[block.section];
   double* const layers = k.layers + at(block.layer_row) * block_lanes;
+  const auto update_by = [&]<class Curve>(const Curve* curve) {
+    if (curve != nullptr) {
+      update_block_by<T, Damped>(k, index, motion, LayeredLaw<Curve, Conditions>{stiffness, section, *curve, layers});
+    }
+  };
   const physics::Hardening& hardening = section.plasticity.hardening;
-  if (const auto* linear = std::get_if<physics::LinearHardening>(&hardening)) {
-    update_block_by<T, Damped>(k, index, motion,
-                               LayeredLaw<physics::LinearHardening>{stiffness, section, *linear, layers});
-  } else if (const auto* power = std::get_if<physics::PowerHardening>(&hardening)) {
-    update_block_by<T, Damped>(k, index, motion,
-                               LayeredLaw<physics::PowerHardening>{stiffness, section, *power, layers});
-  } else if (const auto* table = std::get_if<physics::TableHardening>(&hardening)) {
-    update_block_by<T, Damped>(k, index, motion,
-                               LayeredLaw<physics::TableHardening>{stiffness, section, *table, layers});
+  update_by(std::get_if<physics::LinearHardening>(&hardening));
+  update_by(std::get_if<physics::PowerHardening>(&hardening));
+  update_by(std::get_if<physics::TableHardening>(&hardening));
+}
+
+template <class T, bool Damped>
+FEXP_INLINE void update_layered_block(const ElementKernelArguments& k, Index index, const double* motion) noexcept {
+  if (k.section_data[k.blocks[index].section].layered.has_conditions()) {
+    update_points_of_block<T, Damped, true>(k, index, motion);
+  } else {
+    update_points_of_block<T, Damped, false>(k, index, motion);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "base/pack.hpp"
 #include "physics/critical_step.hpp"
 #include "solve/kernels.hpp"
+#include "solve/kernels/lanes.hpp"
 
 namespace fexp::solve::kernels {
 
@@ -35,22 +36,49 @@ inline double lane_of(const BasicPack<W, Set>& value, int lane) noexcept {
   return value.lane(lane);
 }
 
+/// Critical steps of lane_count<T> elements of a block from `first` on.
+template <class T>
+FEXP_INLINE T elastic_steps(const StepKernelArguments& k, const model::ElementBlock& block, Index first) noexcept {
+  const model::SectionData& section = k.sections[block.section];
+  const std::array<Vec3<T>, 2> side = sides<T>(k, first, block.first + block.count - 1);
+  return physics::element_critical_step({section.thickness, section.moduli, k.drilling}, section.density,
+                                        physics::triangle_frame(side[0], side[1]));
+}
+
+/// The same of a layered block. Not inlined, to leave the loop over elastic blocks as small as it is.
+template <class T>
+[[gnu::noinline]] T layered_steps(const StepKernelArguments& k, const model::ElementBlock& block,
+                                  Index first) noexcept {
+  const model::SectionData& section = k.sections[block.section];
+  const Index last = block.first + block.count - 1;
+  const std::array<Vec3<T>, 2> side = sides<T>(k, first, last);
+  // Behind the last element its area again.
+  std::array<double, at(lane_count<T>)> areas;
+  for (Index lane = 0; lane < lane_count<T>; ++lane) {
+    areas[at(lane)] = k.reference_area[first + lane < last ? first + lane : last];
+  }
+  T thickness = Lanes<T>::load(k.layers + (at(block.layer_row) + physics::layer_thickness) * at(model::block_lanes) +
+                               (first - block.first));
+  if (k.damped) {
+    thickness = maximum(thickness, T(section.thickness));
+  }
+  return physics::layered_critical_step({section.thickness, section.moduli, k.drilling}, section.density, thickness,
+                                        Lanes<T>::load(areas.data()), physics::triangle_frame(side[0], side[1]));
+}
+
 template <class T>
 inline CriticalStep smallest_step(const StepKernelArguments& k, Index begin, Index end) noexcept {
   constexpr Index width = lane_count<T>;
   CriticalStep found;
   for (Index index = begin; index < end; ++index) {
     const model::ElementBlock& block = k.blocks[index];
-    const model::SectionData& section = k.sections[block.section];
     const Index block_end = block.first + block.count;
     const double* const deleted =
         block.layer_row == no_index
             ? nullptr
             : k.layers + (at(block.layer_row) + physics::layer_deleted) * at(model::block_lanes) - block.first;
     for (Index e = block.first; e < block_end; e += width) {
-      const std::array<Vec3<T>, 2> side = sides<T>(k, e, block_end - 1);
-      const T steps = physics::element_critical_step({section.thickness, section.moduli, k.drilling}, section.density,
-                                                     physics::triangle_frame(side[0], side[1]));
+      const T steps = deleted == nullptr ? elastic_steps<T>(k, block, e) : layered_steps<T>(k, block, e);
       for (int lane = 0; lane < width && e + lane < block_end; ++lane) {
         if (deleted != nullptr && deleted[e + lane] != 0.0) {
           continue;

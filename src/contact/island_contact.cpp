@@ -26,7 +26,8 @@ bool by_pair(const model::ContactSide& a, const model::ContactSide& b) noexcept 
 }
 
 Positions positions(const model::Model& model, const model::State& state, double back, bool still) noexcept {
-  return {state.motion.data(), back, model.can_fail ? state.layers.data() : nullptr, still};
+  return {state.motion.data(), back, model.can_fail ? state.layers.data() : nullptr, still,
+          model.ties.can_break ? state.ties.data() : nullptr};
 }
 
 }  // namespace

@@ -180,6 +180,10 @@ CASES = {
             ('[[plane]]', '[[tie]]\nname = "weld"\nset = "rim"\nsurface = ["ball"]\n\n[[plane]]')),
         "A body that is tied to itself": Case(
             ('[[plane]]', '[[tie]]\nname = "weld"\nset = "rim"\nsurface = ["plate"]\n\n[[plane]]')),
+        "A tie with a strength on a rigid body that moves": Case(
+            ('name = "ball"', 'name = "ball"\nrigid = true'),
+            ('[[plane]]', '[[tie]]\nname = "weld"\nset = "rim"\nsurface = ["ball"]\nstrength_normal = 1.0e6\n\n'
+                          '[[plane]]')),
         "A part of a rigid body is held": Case(('name = "plate"', 'name = "plate"\nrigid = true')),
         "A mass of a body that deforms": Case(('name = "plate"', 'name = "plate"\nmass = 2.0')),
         "A wall with a velocity and a displacement": Case(

@@ -57,7 +57,7 @@ struct CheckReport {
 double frame_bytes(const model::Model& model) {
   double bytes = static_cast<double>(sizeof(Vec3d)) * model.node_count();
   for (const io::ResultField& field : io::result_fields()) {
-    if (!field.constant(model.plastic)) {
+    if (!field.constant(io::Variety::of(model))) {
       const Index rows = field.place == io::FieldPlace::node ? model.node_count() : model.element_count();
       bytes += static_cast<double>(io::row_bytes(field)) * rows;
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "app/tie_history.hpp"
 #include "solve/diagnostics.hpp"
 
 namespace fexp::app {
@@ -146,6 +147,9 @@ Histories::Histories(const io::RunDirectory& directory, const Case& loaded, cons
   if (!model_.walls.empty()) {
     walls_ = open(directory.history("walls"), walls_columns(units, model_), mark);
   }
+  if (!model_.ties.empty()) {
+    ties_ = open(directory.history("ties"), tie_columns(model_, units), mark);
+  }
   if (!sets_.empty()) {
     nodes_ = open(directory.history("nodes"), nodes_columns(units), mark);
   }
@@ -167,6 +171,8 @@ std::vector<Index> Histories::bodies_needed(const Case& loaded) {
   const io::OutputSettings& output = loaded.deck.output;
   const std::vector<Index> of_elements = ElementHistory(model, output.elements).bodies();
   std::set<Index> bodies(of_elements.begin(), of_elements.end());
+  const std::vector<Index> of_ties = bodies_of_ties(model);
+  bodies.insert(of_ties.begin(), of_ties.end());
   for (const model::NamedNodes& set : model.node_sets) {
     if (std::ranges::find(output.nodes, set.name) != output.nodes.end()) {
       for (const Index node : set.nodes) {
@@ -193,6 +199,9 @@ void Histories::write(const cluster::Simulation& simulation, const cluster::Epoc
   write_momenta(simulation, report);
   write_steps(simulation, report);
   write_walls(simulation);
+  if (ties_) {
+    write_ties(model_, simulation.state(), *ties_);
+  }
   write_nodes(simulation);
   if (elements_) {
     element_history_.write(simulation.state(), *elements_);
@@ -286,7 +295,7 @@ void Histories::write_bodies(const cluster::Simulation& simulation) {
 
 std::vector<io::CsvWriter*> Histories::files() {
   std::vector<io::CsvWriter*> all{&energies_, &momenta_, &steps_};
-  for (std::optional<io::CsvWriter>* file : {&walls_, &nodes_, &elements_, &bodies_}) {
+  for (std::optional<io::CsvWriter>* file : {&walls_, &ties_, &nodes_, &elements_, &bodies_}) {
     if (*file) {
       all.push_back(&**file);
     }

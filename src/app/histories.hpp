@@ -15,7 +15,8 @@
 namespace fexp::app {
 
 /// The run's CSV files: energies, momenta and steps of the whole model, and where the deck asks for them forces of
-/// rigid walls, motions of nodes and of bodies, and what elements bear. Every row begins with step and time.
+/// rigid walls, what ties transmit, motions of nodes and of bodies, and what elements bear. Every row begins with step
+/// and time.
 class Histories {
  public:
   /// Creates the files, or goes on where `mark` says.
@@ -49,6 +50,7 @@ class Histories {
   io::CsvWriter momenta_;
   io::CsvWriter steps_;
   std::optional<io::CsvWriter> walls_;
+  std::optional<io::CsvWriter> ties_;
   std::optional<io::CsvWriter> nodes_;
   std::optional<io::CsvWriter> elements_;
   std::optional<io::CsvWriter> bodies_;

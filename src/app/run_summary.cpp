@@ -10,6 +10,7 @@
 #include "app/placement_report.hpp"
 #include "app/progress.hpp"
 #include "model/added_mass.hpp"
+#include "model/tie_forces.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::app {
@@ -96,8 +97,10 @@ io::Summary summarise(const Case& loaded, const cluster::Simulation& simulation,
   for (const model::AddedMass& part : model::added_masses(model)) {
     summary.added_mass.push_back({part.body, part.part, part.mass, part.added});
   }
-  for (const model::TieResult& tie : model.ties.results) {
-    summary.ties.push_back({tie.name, tie.tied, static_cast<std::int64_t>(tie.far.size())});
+  for (std::size_t t = 0; t < model.ties.results.size(); ++t) {
+    const model::TieResult& tie = model.ties.results[t];
+    summary.ties.push_back({tie.name, tie.tied, static_cast<std::int64_t>(tie.far.size()),
+                            model::broken_ties(model, state, static_cast<Index>(t))});
   }
   summary.initial_penetrations = loaded.penetrations;
   summary.placement = placement_of(simulation);
@@ -122,7 +125,8 @@ std::string summary_text(const io::Summary& s, const io::UnitNames& units, const
     text += added_mass_text(part, units.of("mass"));
   }
   for (const io::Summary::Tie& tie : s.ties) {
-    text += fmt::format("  tie        \"{}\" holds {} nodes{}\n", tie.name, tie.tied,
+    text += fmt::format("  tie        \"{}\" holds {} nodes{}{}\n", tie.name, tie.tied - tie.broken,
+                        tie.broken > 0 ? fmt::format(", {} are broken", tie.broken) : "",
                         tie.far > 0 ? fmt::format("; warning: {} are too far from its surface and free", tie.far) : "");
   }
   for (const std::string& line : penetration_lines(s.initial_penetrations)) {

@@ -14,6 +14,11 @@ BodyNotice notice_of(const model::Model& model, const model::State& before, cons
     notice.relaxation = relaxation_sums(model, before, state, body);
   }
   notice.contact_work = state.ledger[at(body)].contact_work;
+  notice.tie_work = state.tie_work.empty() ? 0.0 : state.tie_work[at(body)];
+  const IndexRange ties = model.bodies[at(body)].ties;
+  for (Index t = ties.begin; t < ties.end; ++t) {
+    notice.ties += state.ties[at(t)].broken == 0 ? 1 : 0;
+  }
   notice.wall_dissipation = state.ledger[at(body)].wall_dissipation;
   for (const model::PairBook& book : state.pair_books[at(body)]) {
     notice.pairs_off += std::abs(book.open());

@@ -40,7 +40,7 @@ Adjacency adjacency(std::size_t bodies, const std::vector<Edge>& edges) {
 
 }  // namespace
 
-std::vector<Island> find_islands(const model::Model& model, std::span<const Box> swept) {
+std::vector<Island> find_islands(const model::Model& model, std::span<const Box> swept, std::span<const Index> ties) {
   std::vector<Edge> joining, touching_barrier;
   const std::span<const Box> meshed = swept.first(at(model.meshed_body_count()));
   const bool nothing_touches = !model.contact.enabled;
@@ -56,7 +56,9 @@ std::vector<Island> find_islands(const model::Model& model, std::span<const Box>
     }
   }
   for (const model::TiedBodies& tied : model.ties.bodies) {
-    joining.emplace_back(tied.body, tied.carrier);
+    if (ties.empty() || ties[at(tied.body)] > 0) {
+      joining.emplace_back(tied.body, tied.carrier);
+    }
   }
   for (Index wall = model.meshed_body_count(); wall < model.body_count(); ++wall) {
     for (Index body = 0; body < model.meshed_body_count(); ++body) {

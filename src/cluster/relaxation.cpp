@@ -42,7 +42,7 @@ RelaxationSums relaxation_sums(const model::Model& model, const model::State& be
   const auto sum = [&](Index begin, Index end) {
     RelaxationSums part;
     for (Index n = begin; n < end; ++n) {
-      const double mass = model.moving_mass(n), inertia = model.moving_inertia(n);
+      const double mass = moving_mass(model, state, n), inertia = moving_inertia(model, state, n);
       Vec3d force = state.acceleration[at(n)].linear, moment = state.acceleration[at(n)].angular;
       Vec3d velocity = state.motion[at(n)].velocity, rate = state.motion[at(n)].rotation_rate;
       Vec3d way = state.motion[at(n)].position - before.motion[at(n)].position;

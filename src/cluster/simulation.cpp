@@ -78,6 +78,7 @@ Simulation::Simulation(const model::Model& model, solve::KernelChoice kernel, Wo
       notices_[at(b)] = notice_of(model_, state_, state_, b);
     } else {
       notices_[at(b)].extent = extent_of(model_, state_, b);
+      notices_[at(b)].ties = model_.bodies[at(b)].ties.size();
     }
   });
 }
@@ -158,7 +159,11 @@ void Simulation::form_islands(const Attempt& attempt) {
   for (std::size_t b = 0; b < swept.size(); ++b) {
     swept[b] = swept_box(notices_[b].extent, attempt.allowance[b]);
   }
-  std::vector<Island> islands = find_islands(model_, swept);
+  std::vector<Index> ties;
+  for (std::size_t b = 0; b < swept.size() && model_.ties.can_break; ++b) {
+    ties.push_back(notices_[b].ties);
+  }
+  std::vector<Island> islands = find_islands(model_, swept, ties);
   place(islands);
   take_up_solvers(std::move(islands));
   for (const Index body : own_bodies_) {

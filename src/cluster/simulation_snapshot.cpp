@@ -11,7 +11,7 @@ namespace fexp::cluster {
 
 namespace {
 
-constexpr std::uint64_t format_version = 3;
+constexpr std::uint64_t format_version = 4;
 
 /// Step and time stand first in what is packed of a run.
 bool same_moment(std::span<const std::byte> a, std::span<const std::byte> b) {

@@ -133,8 +133,8 @@ EdgeWatch::Place EdgeWatch::place_at(const Pair& p, double first, double second,
 }
 
 /// Whether a tie joins an end of one edge with one of the other.
-bool EdgeWatch::are_joined(const Pair& p) const {
-  const auto joined = [&](std::size_t a, std::size_t b) { return model_.ties.are_joined(p.node[a], p.node[b]); };
+bool EdgeWatch::have_joined_ends(const Pair& p) const {
+  const auto joined = [&](std::size_t a, std::size_t b) { return are_joined(model_, now_, p.node[a], p.node[b]); };
   return !model_.ties.empty() && (joined(0, 2) || joined(0, 3) || joined(1, 2) || joined(1, 3));
 }
 
@@ -230,7 +230,7 @@ void EdgeWatch::push(model::EdgeSide& known, const Pair& p, const Vec3d& drag_be
   const double most = most_distance(p);
   const Place place = place_at(p, p.lines.first, p.lines.second, most);
   const Depth depth = depth_at(place.distance, std::abs(height), height, p.reach);
-  if (!(depth.value > 0.0) || are_joined(p)) {
+  if (!(depth.value > 0.0) || have_joined_ends(p)) {
     return;
   }
   Corners corner{};  // Those that are counted are set

@@ -90,7 +90,7 @@ class EdgeWatch {
   [[nodiscard]] physics::Sharpness sharpness_of(const Pair& pair, int side, Corners& corner) const;
   [[nodiscard]] double most_distance(const Pair& pair) const;
   [[nodiscard]] Place place_at(const Pair& pair, double first, double second, double most_distance) const;
-  [[nodiscard]] bool are_joined(const Pair& pair) const;
+  [[nodiscard]] bool have_joined_ends(const Pair& pair) const;
   [[nodiscard]] double motion_before(const Pair& pair) const;
   [[nodiscard]] const model::ContactLaw& law_of(const Pair& pair) const;
   [[nodiscard]] static Depth depth_at(double contact_distance, double distance, double height, double reach);

@@ -27,7 +27,8 @@ std::vector<Side> all_of(const std::vector<std::vector<Side>>& sides, const std:
 }
 
 Positions positions(const model::Model& model, const model::State& state, double back, bool still) noexcept {
-  return {state.motion.data(), back, model.can_fail ? state.layers.data() : nullptr, still};
+  return {state.motion.data(), back, model.can_fail ? state.layers.data() : nullptr, still,
+          model.ties.can_break ? state.ties.data() : nullptr};
 }
 
 }  // namespace

@@ -271,7 +271,7 @@ void NodeWatch::decide_sides(std::span<const model::ContactSide> memory) {
 /// Whether a tie holds the node at a corner of the element, or that at the node.
 bool NodeWatch::is_joined_with(Index element) const {
   return !model_.ties.empty() && std::ranges::any_of(model_.triangle[at(element)], [this](Index corner) {
-    return model_.ties.are_joined(node_, corner);
+    return are_joined(model_, now_, node_, corner);
   });
 }
 

@@ -26,6 +26,17 @@ bool ends_at_node(const model::Model& model, const Positions& x, Index element, 
   return false;
 }
 
+/// Whether a node is tied to a triangle at another one, and the tie keeps contact from between them.
+bool is_tied_to(const model::Model& model, const model::TieState* ties, Index node, Index carrier) noexcept {
+  const Index number = model.ties.tie_of(node);
+  if (number == no_index) {
+    return false;
+  }
+  const model::Tie& tie = model.ties.ties[at(number)];
+  return (ties[number].broken == 0 || !(tie.length > 0.0)) &&
+         std::ranges::find(tie.carrier, carrier) != tie.carrier.end();
+}
+
 /// Steepest view from the elements at that edge of the closest corner which leads least away from the point.
 double view_at_outermost_edge(const model::Model& model, Normals& normals, Index element,
                               const physics::ClosestPoint& closest) noexcept {
@@ -55,6 +66,11 @@ double view_at_outermost_edge(const model::Model& model, Normals& normals, Index
 }
 
 }  // namespace
+
+bool are_joined(const model::Model& model, const Positions& x, Index a, Index b) noexcept {
+  return model.ties.are_joined(a, b) &&
+         (x.ties == nullptr || is_tied_to(model, x.ties, a, b) || is_tied_to(model, x.ties, b, a));
+}
 
 bool Positions::has_left(const model::Model& model, Index element) const noexcept {
   return !model::is_deleted(model, layers, element, still ? 1 : 0);

@@ -16,6 +16,7 @@ struct Positions {
   double back{};                      ///< [time]
   const double* layers{};             ///< Those of the state where elements can fail, else null
   bool still{};                       ///< No step has been taken, see model::is_deleted
+  const model::TieState* ties{};      ///< Those of the state where ties can break, else null
 
   [[nodiscard]] Vec3d operator()(Index node) const noexcept {
     const model::NodeMotion& m = motion[node];
@@ -33,6 +34,10 @@ struct Positions {
   [[nodiscard]] bool has_left(const model::Model& model, Index element) const noexcept;
   [[nodiscard]] bool has_left_at(const model::Model& model, Index node) const noexcept;
 };
+
+/// Whether a tie joins two nodes now. One that has broken does so still where it was on the very triangle: nobody could
+/// tell on which side of that the node belongs.
+[[nodiscard]] bool are_joined(const model::Model& model, const Positions& x, Index a, Index b) noexcept;
 
 [[nodiscard]] inline physics::ClosestPoint closest_on(const model::Model& model, const Positions& x, Index element,
                                                       const Vec3d& point) noexcept {

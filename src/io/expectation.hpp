@@ -50,8 +50,8 @@ struct Subtrahend {
 /// What a run is expected to give: a number taken from one column of a history, and a reference for it. "fexp verify"
 /// runs the deck and holds one against the other; a plain run takes no notice.
 struct Expectation {
-  static constexpr std::array<std::string_view, 7> histories{"energies", "momenta",  "steps", "walls",
-                                                             "nodes",    "elements", "bodies"};
+  static constexpr std::array<std::string_view, 8> histories{"energies", "momenta", "steps",    "walls",
+                                                             "ties",     "nodes",   "elements", "bodies"};
   static constexpr std::array<std::string_view, 4> ways_over_rows{"mean", "sum", "smallest", "largest"};
   static constexpr std::array<std::string_view, 10> ways_over_time{
       "first", "last", "smallest", "largest", "farthest", "time_of_farthest", "mean", "at", "crossing", "period"};

@@ -73,7 +73,7 @@ ordered_json fault_part(const Summary::FaultPlace& f) {
 ordered_json ties_part(const std::vector<Summary::Tie>& ties) {
   ordered_json list = ordered_json::array();
   for (const Summary::Tie& tie : ties) {
-    list.push_back({{"name", tie.name}, {"tied", tie.tied}, {"far", tie.far}});
+    list.push_back({{"name", tie.name}, {"tied", tie.tied}, {"far", tie.far}, {"broken", tie.broken}});
   }
   return list;
 }

@@ -87,8 +87,9 @@ struct Summary {
   std::vector<AddedMass> added_mass;
   struct Tie {
     std::string name;
-    std::int64_t tied{};  ///< Nodes
-    std::int64_t far{};   ///< Nodes of its set that are too far from the surface
+    std::int64_t tied{};    ///< Nodes
+    std::int64_t far{};     ///< Nodes of its set that are too far from the surface
+    std::int64_t broken{};  ///< Nodes of those tied that are so no more
   };
   std::vector<Tie> ties;
 

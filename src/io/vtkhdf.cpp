@@ -41,7 +41,7 @@ struct ResultsWriter::Parts {
   Index nodes{};
   Index elements{};
   int deflate{};
-  bool plastic{};
+  Variety variety{};
   bool usable{true};
   bool abandoned{};
 
@@ -111,7 +111,7 @@ void ResultsWriter::Parts::make_steps() {
   for (const ResultField& field : result_fields()) {
     const bool node = field.place == FieldPlace::node;
     const std::string offsets = group + (node ? "PointDataOffsets/" : "CellDataOffsets/") + std::string(field.name);
-    const std::string same = field.constant(plastic) ? group + "PartOffsets"
+    const std::string same = field.constant(variety) ? group + "PartOffsets"
                              : node                  ? group + "PointOffsets"
                                                      : std::string("/fexp/element_offsets");
     file.make_link(same, offsets);
@@ -120,8 +120,9 @@ void ResultsWriter::Parts::make_steps() {
 
 void ResultsWriter::Parts::make_own_group(const ResultsMesh& mesh, const ResultsOptions& options) {
   file.make_group("/fexp");
-  file.set_attribute("/fexp", "format", std::vector<std::int64_t>{1});
-  file.set_attribute("/fexp", "plastic", std::vector<std::int64_t>{plastic ? 1 : 0});
+  file.set_attribute("/fexp", "format", std::vector<std::int64_t>{results_format});
+  file.set_attribute("/fexp", "plastic", std::vector<std::int64_t>{variety.plastic ? 1 : 0});
+  file.set_attribute("/fexp", "tied", std::vector<std::int64_t>{variety.tied ? 1 : 0});
   file.set_attribute("/fexp", "program", "fexp " FEXP_VERSION);
   file.set_attribute("/fexp", "title", options.title);
   (void)file.make_growing("/fexp/step", H5T_NATIVE_INT64, 0, {step_rows});
@@ -186,7 +187,7 @@ void ResultsWriter::Parts::grow_to(std::int64_t count) {
   const auto element_rows = static_cast<hsize_t>(elements);
   file.grow(points, frame_count * node_rows);
   for (const Growing& g : growing) {
-    const hsize_t blocks = g.field->constant(plastic) ? std::min<hsize_t>(frame_count, 1) : frame_count;
+    const hsize_t blocks = g.field->constant(variety) ? std::min<hsize_t>(frame_count, 1) : frame_count;
     file.grow(g.dataset, blocks * (g.field->place == FieldPlace::node ? node_rows : element_rows));
   }
   for (const Handle* rows : {&values, &steps, &point_offsets, &element_offsets}) {
@@ -204,7 +205,7 @@ void ResultsWriter::Parts::write_frame(const model::Frame& frame) {
   grow_to(frames + 1);
   file.write_rows(points, H5T_NATIVE_DOUBLE, index * node_rows, node_rows, frame.position.data());
   for (const Growing& g : growing) {
-    if (g.field->constant(plastic) && frames > 0) {
+    if (g.field->constant(variety) && frames > 0) {
       continue;
     }
     const hsize_t rows = g.field->place == FieldPlace::node ? node_rows : element_rows;
@@ -229,7 +230,7 @@ ResultsMesh::ResultsMesh(const model::Model& model)
       node_label(model.node_label),
       element_label(model.element_label),
       body_name(names_of(model)),
-      plastic(model.plastic) {}
+      variety(Variety::of(model)) {}
 
 ResultsMesh::ResultsMesh(const model::Model& model, const model::Cutout& cutout)
     : triangle(cutout.triangle),
@@ -237,7 +238,7 @@ ResultsMesh::ResultsMesh(const model::Model& model, const model::Cutout& cutout)
       node_label(cutout.node_label),
       element_label(cutout.element_label),
       body_name(names_of(model)),
-      plastic(model.plastic) {}
+      variety(Variety::of(model)) {}
 
 ResultsWriter::ResultsWriter(const std::filesystem::path& path, const model::Model& model,
                              const ResultsOptions& options)
@@ -252,7 +253,7 @@ ResultsWriter::ResultsWriter(const std::filesystem::path& path, const ResultsMes
                                          .nodes = static_cast<Index>(mesh.node_body.size()),
                                          .elements = static_cast<Index>(mesh.triangle.size()),
                                          .deflate = options.deflate,
-                                         .plastic = mesh.plastic});
+                                         .variety = mesh.variety});
   parts_->make_structure(mesh, options);
   parts_->open_datasets();
   parts_->file.flush();
@@ -279,7 +280,7 @@ ResultsWriter ResultsWriter::resume(const std::filesystem::path& path, const mod
                                              .frames = frames,
                                              .nodes = model.node_count(),
                                              .elements = model.element_count(),
-                                             .plastic = model.plastic});
+                                             .variety = Variety::of(model)});
   const std::int64_t present = parts->file.integer_attribute("/VTKHDF/Steps", "NSteps");
   std::int64_t node_count = 0;
   std::int64_t element_count = 0;

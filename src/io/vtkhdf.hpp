@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "io/vtkhdf_fields.hpp"
 #include "model/capture.hpp"
 #include "model/cutout.hpp"
 #include "model/model.hpp"
@@ -22,7 +23,7 @@ struct ResultsMesh {
   std::span<const std::int64_t> node_label;        // [nodes]
   std::span<const std::int64_t> element_label;     // [elements]
   std::vector<std::string> body_name;              // [bodies of the model]
-  bool plastic{};                                  ///< Some material of the model is plastic
+  Variety variety{};
 
   explicit ResultsMesh(const model::Model& model);
   ResultsMesh(const model::Model& model, const model::Cutout& cutout);

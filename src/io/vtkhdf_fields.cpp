@@ -52,6 +52,10 @@ constexpr std::array fields{
                 data_of<&Frame::body>},
     ResultField{"island", FieldPlace::element, 1, FieldType::integer, Varies::always, "-",
                 "Index of the island, -1 for a barrier", data_of<&Frame::island>},
+    ResultField{"tie_force", FieldPlace::node, 3, FieldType::single_precision, Varies::where_tied, "force",
+                "Force of a tied node on what carries it", data_of<&Frame::tie_force>},
+    ResultField{"tied", FieldPlace::node, 1, FieldType::integer, Varies::where_tied, "-",
+                "1 while a tie holds the node, else 0", data_of<&Frame::tied>},
 };
 
 }  // namespace

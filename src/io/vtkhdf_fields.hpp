@@ -11,9 +11,20 @@
 /// The one list of what results hold: the writer, the XDMF file, the reader and the documents follow it.
 namespace fexp::io {
 
+/// Of the file: which fields there are, and where.
+inline constexpr int results_format = 2;
+
 enum class FieldPlace { node, element };
-enum class Varies { always, where_plastic, never };
+enum class Varies { always, where_plastic, where_tied, never };
 enum class FieldType { single_precision, double_precision, integer };
+
+/// What there is in a model that has fields vary.
+struct Variety {
+  bool plastic{};
+  bool tied{};
+
+  [[nodiscard]] static Variety of(const model::Model& model) noexcept { return {model.plastic, !model.ties.empty()}; }
+};
 
 struct ResultField {
   std::string_view name;
@@ -25,9 +36,10 @@ struct ResultField {
   std::string_view meaning;
   const void* (*data)(const model::Frame&);
 
-  /// The same in every frame of a model with plastic materials or without: stored once.
-  [[nodiscard]] constexpr bool constant(bool plastic) const noexcept {
-    return varies == Varies::never || (varies == Varies::where_plastic && !plastic);
+  /// The same in every frame: stored once.
+  [[nodiscard]] constexpr bool constant(const Variety& variety) const noexcept {
+    return varies == Varies::never || (varies == Varies::where_plastic && !variety.plastic) ||
+           (varies == Varies::where_tied && !variety.tied);
   }
 };
 

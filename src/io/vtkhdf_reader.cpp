@@ -30,6 +30,9 @@ ResultsReader::ResultsReader(const std::filesystem::path& path)
   if (!file.exists("/VTKHDF/Steps") || !file.exists("/fexp/step")) {
     throw OutputError(path, "not a results file of fexp", "give a results.vtkhdf or a run directory");
   }
+  if (file.integer_attribute("/fexp", "format") != results_format) {
+    throw OutputError(path, "the results are of another version of fexp", "use that version, or write them again");
+  }
   const std::int64_t node_count = file_->first_number("/VTKHDF/NumberOfPoints");
   const std::int64_t element_count = file_->first_number("/VTKHDF/NumberOfCells");
   const std::int64_t frame_count = file.integer_attribute("/VTKHDF/Steps", "NSteps");
@@ -43,7 +46,8 @@ ResultsReader::ResultsReader(const std::filesystem::path& path)
   times_ = file_->rows<double>("/VTKHDF/Steps/Values", H5T_NATIVE_DOUBLE, 0, count);
   steps_ = file_->rows<std::int64_t>("/fexp/step", H5T_NATIVE_INT64, 0, count);
   body_names_ = file.read_strings("/fexp/body_names");
-  plastic_ = file.integer_attribute("/fexp", "plastic") != 0;
+  variety_.plastic = file.integer_attribute("/fexp", "plastic") != 0;
+  variety_.tied = file.integer_attribute("/fexp", "tied") != 0;
   title_ = file.text_attribute("/fexp", "title");
   program_ = file.text_attribute("/fexp", "program");
 }
@@ -73,13 +77,13 @@ std::vector<double> ResultsReader::points(std::int64_t frame) const {
 
 std::vector<std::byte> ResultsReader::raw(const ResultField& field, std::int64_t frame) const {
   const std::size_t rows = rows_of(field);
-  const std::int64_t begin = field.constant(plastic_) ? 0 : frame * static_cast<std::int64_t>(rows);
+  const std::int64_t begin = field.constant(variety_) ? 0 : frame * static_cast<std::int64_t>(rows);
   return file_->rows<std::byte>(path_of(field), hdf5::type_of(field.type), begin, rows, row_bytes(field));
 }
 
 std::vector<double> ResultsReader::numbers(const ResultField& field, std::int64_t frame) const {
   const std::size_t rows = rows_of(field);
-  const std::int64_t begin = field.constant(plastic_) ? 0 : frame * static_cast<std::int64_t>(rows);
+  const std::int64_t begin = field.constant(variety_) ? 0 : frame * static_cast<std::int64_t>(rows);
   return file_->rows<double>(path_of(field), H5T_NATIVE_DOUBLE, begin, rows,
                              static_cast<std::size_t>(field.components));
 }

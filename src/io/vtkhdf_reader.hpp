@@ -27,7 +27,7 @@ class ResultsReader {
   [[nodiscard]] const std::vector<std::int64_t>& steps() const noexcept { return steps_; }  ///< [frames]
   [[nodiscard]] const std::vector<std::string>& body_names() const noexcept { return body_names_; }
   /// Whether the field is the same in all frames.
-  [[nodiscard]] bool is_constant(const ResultField& field) const noexcept { return field.constant(plastic_); }
+  [[nodiscard]] bool is_constant(const ResultField& field) const noexcept { return field.constant(variety_); }
   [[nodiscard]] const std::string& title() const noexcept { return title_; }
   [[nodiscard]] const std::string& program() const noexcept { return program_; }
 
@@ -53,7 +53,7 @@ class ResultsReader {
   std::unique_ptr<File> file_;
   Index nodes_{};
   Index elements_{};
-  bool plastic_{};
+  Variety variety_{};
   std::vector<double> times_;
   std::vector<std::int64_t> steps_;
   std::vector<std::string> body_names_;

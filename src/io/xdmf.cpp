@@ -37,7 +37,7 @@ XdmfWriter::XdmfWriter(std::filesystem::path path, std::string results, const mo
       results_(std::move(results)),
       nodes_(model.node_count()),
       elements_(model.element_count()),
-      plastic_(model.plastic) {
+      variety_(Variety::of(model)) {
   for (const double time : times) {
     list(time);
   }
@@ -77,7 +77,7 @@ std::string XdmfWriter::frame_text(std::int64_t frame, double time) const {
     const std::int64_t rows = node ? nodes_ : elements_;
     text += fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">", field.name,
                         attribute_type(field.components), node ? "Node" : "Cell");
-    text += rows_text(path_of(field), field.constant(plastic_) ? 0 : frame * rows, rows, field.components,
+    text += rows_text(path_of(field), field.constant(variety_) ? 0 : frame * rows, rows, field.components,
                       number_text(field.type));
     text += "</Attribute>\n";
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/vtkhdf_fields.hpp"
 #include "model/model.hpp"
 
 namespace fexp::io {
@@ -36,7 +37,7 @@ class XdmfWriter {
   std::string results_;
   std::int64_t nodes_{};
   std::int64_t elements_{};
-  bool plastic_{};
+  Variety variety_{};
   std::string frames_text_;
   std::int64_t frames_{};
   std::int64_t written_{};

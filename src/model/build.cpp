@@ -11,11 +11,11 @@
 #include "model/build_bodies.hpp"
 #include "model/build_checks.hpp"
 #include "model/build_contact.hpp"
+#include "model/build_masses.hpp"
 #include "model/build_rigid.hpp"
 #include "model/build_ties.hpp"
 #include "model/build_walls.hpp"
 #include "model/condition_lookup.hpp"
-#include "model/element_shares.hpp"
 #include "model/node_sets.hpp"
 #include "model/topology.hpp"
 #include "parallel/parallel.hpp"
@@ -23,6 +23,9 @@
 namespace fexp::model {
 
 namespace {
+
+/// Builds until elements at ties get the largest mass that they may need.
+constexpr int most_tries = 6;
 
 void build_curve_areas(Model& model) {
   for (const Curve& curve : model.curves) {
@@ -73,97 +76,6 @@ void place_layers(Model& model) {
   }
 }
 
-/// Gives the elements of rigid bodies whose mass is given the density for it, and takes all of them out of the search
-/// for the smallest step, unless there are no others: then they stand for what the penalty stiffness of contact has to
-/// go by.
-void make_rigid(const Description& description, Model& model, ElementShares& shares) {
-  const auto is_rigid = [&](const Body& body) { return description.bodies[at(body.description)].rigid; };
-  const bool all_rigid = std::all_of(model.bodies.begin(), model.bodies.end(), is_rigid);
-  for (Body& body : model.bodies) {
-    if (!is_rigid(body)) {
-      continue;
-    }
-    const double given = description.bodies[at(body.description)].mass;
-    double sum = 0.0;
-    for (Index e = body.elements.begin; e < body.elements.end; ++e) {
-      sum += 3.0 * shares.mass[at(e)];
-    }
-    body.density_factor = given > 0.0 ? given / sum : 1.0;
-    for (Index e = body.elements.begin; e < body.elements.end; ++e) {
-      shares.mass[at(e)] *= body.density_factor;
-      shares.inertia[at(e)] *= body.density_factor;
-      shares.step[at(e)] = all_rigid ? std::sqrt(body.density_factor) * shares.step[at(e)] : HUGE_VAL;
-    }
-  }
-}
-
-/// Gives elements that need a smaller step than asked for as much mass as it takes: the step goes with its root. With
-/// stiffness damping beta a step dt is critical for the undamped one sqrt(dt^2 + 2 beta dt).
-void scale_masses(Model& model, ElementShares& shares) {
-  if (model.run.minimum_step < 0.0) {
-    return;
-  }
-  const double damped = model.run.minimum_step / model.run.safety;
-  const double target = std::sqrt(damped * damped + 2.0 * model.run.stiffness_damping * damped);
-  const auto is_short = [&](double step) { return step < target; };
-  if (std::none_of(shares.step.begin(), shares.step.end(), is_short)) {
-    return;
-  }
-  model.step_factor.assign(shares.step.size(), 1.0);
-  for (std::size_t e = 0; e < shares.step.size(); ++e) {
-    if (is_short(shares.step[e])) {
-      const double factor = target / shares.step[e];
-      model.step_factor[e] = factor;
-      shares.mass[e] *= factor * factor;
-      shares.inertia[e] *= factor * factor;
-      shares.step[e] *= factor;
-    }
-  }
-}
-
-/// Lumped masses and inertias, areas and half thicknesses; each node gathers its own corners.
-void build_masses(const Description& description, Model& model) {
-  const std::size_t elements = model.triangle.size(), nodes = model.reference_position.size();
-  ElementShares shares = element_shares(model);
-  model.reference_area = std::move(shares.area);
-  make_rigid(description, model, shares);
-  scale_masses(model, shares);
-  model.first_critical_step = HUGE_VAL;
-  for (std::size_t e = 0; e < elements; ++e) {
-    if (shares.step[e] < model.first_critical_step) {
-      model.first_critical_step = shares.step[e];
-      model.first_critical_element = static_cast<Index>(e);
-    }
-  }
-  model.mass.resize(nodes);
-  model.inertia.resize(nodes);
-  model.half_thickness.resize(nodes);
-  model.node_size.resize(nodes);
-  parallel::for_each(model.node_count(), 1024, [&](Index n) {
-    double mass = 0.0, inertia = 0.0, thickness = 0.0, area = HUGE_VAL;
-    for (Index c = model.corner_start[at(n)]; c < model.corner_start[at(n) + 1]; ++c) {
-      const Index e = model.corner[at(c)] / 3;
-      mass += shares.mass[at(e)];
-      inertia += shares.inertia[at(e)];
-      thickness = std::max(thickness, model.section_of(e).thickness);
-      area = std::min(area, model.reference_area[at(e)]);
-    }
-    model.mass[at(n)] = mass;
-    model.inertia[at(n)] = inertia;
-    model.half_thickness[at(n)] = 0.5 * thickness;
-    model.node_size[at(n)] = std::sqrt(area);
-  });
-  for (const AddedNode& point : model.point_masses) {
-    model.mass[at(point.node)] += point.mass;
-    model.inertia[at(point.node)] += point.inertia;
-  }
-  for (Body& body : model.bodies) {
-    for (Index n = body.nodes.begin; n < body.nodes.end; ++n) {
-      body.mass += model.mass[at(n)];
-    }
-  }
-}
-
 void build_velocities(const Description& description, Model& model) {
   model.initial_velocity.resize(model.reference_position.size());
   model.initial_rotation_rate.resize(model.reference_position.size());
@@ -210,33 +122,9 @@ void add_velocities(const Description& description, Model& model, ErrorList& err
   }
 }
 
-/// Names the first node of each described body whose mass or penalty stiffness is no positive finite number.
-void check_masses(const Description& description, const Model& model, ErrorList& errors) {
-  Index reported = no_index;
-  for (const Body& body : model.bodies) {
-    for (Index n = body.nodes.begin; n < body.nodes.end && body.description != reported; ++n) {
-      if (positive.contains(model.mass[at(n)]) && positive.contains(model.inertia[at(n)]) &&
-          positive.contains(model.contact_stiffness[at(n)])) {
-        continue;
-      }
-      const bool alone = model.corner_start[at(n)] == model.corner_start[at(n) + 1];
-      errors.add(description.bodies[at(body.description)].place,
-                 fmt::format("node {} of body \"{}\" {}", model.node_label[at(n)], body.name,
-                             alone ? "belongs to no triangle"
-                                   : fmt::format("has mass {:g} and penalty stiffness {:g}", model.mass[at(n)],
-                                                 model.contact_stiffness[at(n)])),
-                 "positive finite mass and stiffness at every node",
-                 alone ? "remove the node from the mesh" : "correct scale, thickness, material or their units");
-      reported = body.description;
-    }
-  }
-}
-
-}  // namespace
-
-Model build_model(const Description& description, std::span<const Mesh> meshes, ErrorList& errors,
-                  std::span<const Vec3d> positions) {
-  assert(meshes.size() == description.bodies.size());
+/// `ratio`: by what ties raise omega^2, see build_masses.
+Model build_once(const Description& description, std::span<const Mesh> meshes, ErrorList& errors,
+                 std::span<const Vec3d> positions, std::span<const double> ratio) {
   Model model;
   check_description(description, errors);
   model.run = description.run;
@@ -263,7 +151,7 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
     std::copy_n(positions.begin(), model.reference_position.size(), model.reference_position.begin());
   }
   build_point_masses(description, model);
-  build_masses(description, model);
+  build_masses(description, model, ratio);
   build_contact_stiffness(model);
   check_masses(description, model, errors);
   build_velocities(description, model);
@@ -274,6 +162,20 @@ Model build_model(const Description& description, std::span<const Mesh> meshes, 
   build_ties(description, model, errors);
   find_body_ranges(model);
   build_wall_bodies(description, model);
+  return model;
+}
+
+}  // namespace
+
+Model build_model(const Description& description, std::span<const Mesh> meshes, ErrorList& errors,
+                  std::span<const Vec3d> positions) {
+  assert(meshes.size() == description.bodies.size());
+  std::vector<double> ratio;
+  Model model = build_once(description, meshes, errors, positions, ratio);
+  // Mass that elements get changes what ties make of the step, and the other way round.
+  for (int tries = 1; errors.empty() && raise_ratios(model, tries >= most_tries, ratio); ++tries) {
+    model = build_once(description, meshes, errors, positions, ratio);
+  }
   return model;
 }
 

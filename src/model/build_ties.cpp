@@ -39,13 +39,14 @@ class TieBuilder {
     TieResult& result = model_.ties.results.emplace_back();
     result.name = given.name;
     const std::size_t errors_before = errors_.size();
+    model_.ties.can_break = model_.ties.can_break || has_strength(given);
     const std::vector<Index> bodies =
         BodyNames(model_).find(given.surface, given.place, fmt::format("tie \"{}\"", given.name), errors_);
     if (given.surface.empty()) {
       errors_.add(given.place, fmt::format("tie \"{}\" names no body as its surface", given.name),
                   name_list(BodyNames(model_).families()), "name the bodies that carry the nodes");
     }
-    if (bodies.empty() || errors_.size() != errors_before || !may_be_tied(given, bodies)) {
+    if (bodies.empty() || errors_.size() != errors_before || !may_break(given, bodies) || !may_be_tied(given, bodies)) {
       return;
     }
     const SurfaceSearch surface(model_, bodies);
@@ -107,8 +108,37 @@ class TieBuilder {
     return found != items.end() && found->node == node;
   }
 
+  [[nodiscard]] static bool has_strength(const TieDescription& given) {
+    return given.strength_normal > 0.0 || given.strength_shear > 0.0;
+  }
+
+  /// A rigid body keeps its mass: nodes that it carries cannot leave it.
+  bool may_break(const TieDescription& given, const std::vector<Index>& surface) {
+    const auto moves = [&](Index body) {
+      return model_.bodies[at(body)].rigid != no_index && !is_held(model_.bodies[at(body)]);
+    };
+    const auto found = has_strength(given) ? std::ranges::find_if(surface, moves) : surface.end();
+    if (found != surface.end()) {
+      errors_.add(given.place,
+                  fmt::format("tie \"{}\" has a strength, and body \"{}\" of its surface is rigid and moves",
+                              given.name, model_.bodies[at(*found)].name),
+                  "surfaces that deform, or rigid ones that are held in all degrees of freedom",
+                  "take the strength away, let the body deform, or hold it");
+    }
+    return found == surface.end();
+  }
+
+  [[nodiscard]] bool is_held(const Body& body) const {
+    const auto found = first_at(model_.fixed, body.nodes.begin);
+    return found != model_.fixed.end() && found->node == body.nodes.begin && found->mask == every_dof;
+  }
+
   bool may_be_tied(const TieDescription& given, const std::vector<Index>& surface) {
     return std::ranges::all_of(lookup_.nodes(given.set), [&](Index n) { return may_be_tied(given, surface, n); });
+  }
+
+  [[nodiscard]] bool has_condition(Index n) const {
+    return has(model_.fixed, n) || has(model_.prescribed, n) || has(model_.symmetry, n) || has(model_.oblique, n);
   }
 
   bool may_be_tied(const TieDescription& given, const std::vector<Index>& surface, Index n) {
@@ -128,7 +158,7 @@ class TieBuilder {
                   "nodes of bodies that deform", "swap the sides: tie nodes of the other body to the rigid one");
       return false;
     }
-    if (has(model_.fixed, n) || has(model_.prescribed, n) || has(model_.symmetry, n) || has(model_.oblique, n)) {
+    if (has_condition(n)) {
       errors_.add(
           given.place,
           fmt::format("tie \"{}\": {} has a condition besides (fixed, prescribed or symmetry)", given.name, text_of(n)),
@@ -168,10 +198,9 @@ class TieBuilder {
     }
     tie_of_[at(n)] = number;
     ++result.tied;
-    if (are_held(corner, found.closest.weight)) {
+    const Tie& made = model_.ties.ties.emplace_back(made_of(given, number, n, corner, found.closest));
+    if (made.is_fixed()) {
       held_.push_back({n, given.rotations ? every_dof : every_translation});
-    } else {
-      model_.ties.ties.push_back(made(given, number, n, corner, found.closest));
     }
     return true;
   }
@@ -187,17 +216,20 @@ class TieBuilder {
     return held;
   }
 
-  [[nodiscard]] Tie made(const TieDescription& given, Index number, Index n, const std::array<Index, 3>& corner,
-                         const physics::ClosestPoint& closest) const {
+  [[nodiscard]] Tie made_of(const TieDescription& given, Index number, Index n, const std::array<Index, 3>& corner,
+                            const physics::ClosestPoint& closest) const {
     Tie tie;
     tie.node = n;
     tie.carrier = corner;
     tie.rotations = given.rotations;
     tie.description = number;
-    tie.rigid = model_.bodies[at(model_.node_body[at(corner[0])])].rigid;
+    tie.held = are_held(corner, closest.weight);
+    tie.breaks = has_strength(given);
+    tie.rigid = tie.held ? no_index : model_.bodies[at(model_.node_body[at(corner[0])])].rigid;
     double sum = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
       tie.weight[a] = closest.weight[a] > least_weight ? closest.weight[a] : 0.0;
+      tie.conditions = tie.conditions || (tie.weight[a] > 0.0 && has_condition(corner[a]));
       sum += tie.weight[a];
     }
     Vec3d arm = model_.reference_position[at(n)];
@@ -223,8 +255,13 @@ class TieBuilder {
 void join(Model& model) {
   Ties& ties = model.ties;
   for (const Tie& tie : ties.ties) {
+    if (tie.is_fixed()) {
+      continue;
+    }
     const Index body = model.node_body[at(tie.node)], carrier = model.node_body[at(tie.carrier[0])];
-    ties.bodies.push_back({body, carrier, tie.length});
+    if (!tie.held) {
+      ties.bodies.push_back({body, carrier, tie.length});
+    }
     for (std::size_t a = 0; a < 3; ++a) {
       ties.joined.emplace_back(tie.node, tie.carrier[a]);
       ties.joined.emplace_back(tie.carrier[a], tie.node);
@@ -245,6 +282,11 @@ bool Ties::are_joined(Index a, Index b) const noexcept {
   return std::binary_search(joined.begin(), joined.end(), std::pair{a, b});
 }
 
+Index Ties::tie_of(Index node) const noexcept {
+  const auto found = std::ranges::lower_bound(ties, node, {}, &Tie::node);
+  return found != ties.end() && found->node == node ? static_cast<Index>(found - ties.begin()) : no_index;
+}
+
 void build_ties(const Description& description, Model& model, ErrorList& errors) {
   if (description.ties.empty() || !errors.empty()) {
     return;
@@ -256,7 +298,11 @@ void build_ties(const Description& description, Model& model, ErrorList& errors)
   std::sort(model.ties.ties.begin(), model.ties.ties.end(), [](const Tie& a, const Tie& b) { return a.node < b.node; });
   builder.hold();
   builder.check_chains();
+  if (!errors.empty()) {
+    return;
+  }
   join(model);
+  give_strengths(description, model);
   weigh_ties(model);
   add_tied_masses(model);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "model/element_stresses.hpp"
+#include "model/tie_forces.hpp"
 #include "parallel/parallel.hpp"
 
 namespace fexp::model {
@@ -31,6 +32,13 @@ void capture_nodes(const Model& model, const State& state, std::span<const Vec3d
     frame.velocity[n] = single(motion.velocity);
     frame.rotation_rate[n] = single(motion.rotation_rate);
     frame.contact_force[n] = contact_force.empty() ? std::array<float, 3>{} : single(contact_force[n]);
+  });
+  frame.tie_force.assign(count, {});
+  frame.tied.assign(count, 0);
+  parallel::for_each(static_cast<Index>(state.ties.size()), grain, [&](Index tie) {
+    const std::size_t n = at(model.ties.ties[at(tie)].node);
+    frame.tie_force[n] = single(tie_force(model, state, state.time, tie).force);
+    frame.tied[n] = state.ties[at(tie)].broken == 0 ? 1 : 0;
   });
 }
 

@@ -26,6 +26,8 @@ struct Frame {
   std::vector<std::array<float, 3>> velocity;       ///< [length/time]
   std::vector<std::array<float, 3>> rotation_rate;  ///< [1/time]
   std::vector<std::array<float, 3>> contact_force;  ///< From other shells and itself, without rigid walls [force]
+  std::vector<std::array<float, 3>> tie_force;      ///< Of tied nodes on what carries them [force]
+  std::vector<Index> tied;                          ///< 1 while a tie holds the node, else 0
 
   // Elements, shape [elements]; resultants in the element frame: x along the edge from corner 1 to 2, z the normal
   std::vector<std::array<float, 3>> membrane_force;  ///< nxx nyy nxy [force/length]

@@ -75,6 +75,8 @@ Frame cut_out(const Frame& frame, const Cutout& cutout) {
   cut.velocity = at_nodes(frame.velocity);
   cut.rotation_rate = at_nodes(frame.rotation_rate);
   cut.contact_force = at_nodes(frame.contact_force);
+  cut.tie_force = at_nodes(frame.tie_force);
+  cut.tied = at_nodes(frame.tied);
   cut.membrane_force = at_elements(frame.membrane_force);
   cut.bending_moment = at_elements(frame.bending_moment);
   cut.shear_force = at_elements(frame.shear_force);

@@ -263,8 +263,8 @@ struct Model {
   [[nodiscard]] double mass_factor(Index element) const noexcept {
     return step_factor.empty() ? 1.0 : step_factor[at(element)] * step_factor[at(element)];
   }
-  /// What the acceleration of a node moves: its mass [mass] and inertia [mass*length^2] unless ties give it more or
-  /// take them away.
+  /// What the acceleration of a node moves as long as no tie breaks, see model::moving_mass(model, state, node): its
+  /// mass [mass] and inertia [mass*length^2] unless ties give it more or take them away.
   [[nodiscard]] double moving_mass(Index node) const noexcept {
     return ties.empty() ? mass[at(node)] : ties.mass[at(node)];
   }

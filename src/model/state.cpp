@@ -56,6 +56,9 @@ class Reader {
 static_assert(sizeof(NodeMotion) == 9 * sizeof(double) && sizeof(NodeAcceleration) == 6 * sizeof(double));
 static_assert(sizeof(BodyLedger) == 13 * sizeof(double));
 static_assert(sizeof(RigidMotion) == 19 * sizeof(double));
+static_assert(sizeof(NodeInertia) == 2 * sizeof(double));
+// Six doubles and a number of 64 bits.
+static_assert(sizeof(TieState) == 7 * sizeof(double));
 
 std::size_t row_offset(Index block, Index row) { return (at(block) * element_rows + at(row)) * at(block_lanes); }
 
@@ -89,6 +92,11 @@ void for_each_row(const Model& model, const Body& body, SomeState& state, const 
   }
 }
 
+std::size_t bytes_of_ties(const Model& model, const Body& body) {
+  return at(body.ties.size()) * sizeof(TieState) + (model.ties.empty() ? 0 : sizeof(double)) +
+         (model.ties.can_break ? at(body.nodes.size()) * sizeof(NodeInertia) : 0);
+}
+
 /// Bytes in front of the numbers of sides.
 std::size_t bytes_before_sides(const Model& model, const Body& body) {
   std::size_t numbers = 0;
@@ -98,7 +106,19 @@ std::size_t bytes_before_sides(const Model& model, const Body& body) {
   }
   const std::size_t of_node = sizeof(NodeMotion) + sizeof(NodeAcceleration) + at(model.rubbing_walls) * sizeof(Vec3d);
   return at(body.nodes.size()) * of_node + numbers * sizeof(double) +
-         (body.rigid == no_index ? 0 : sizeof(RigidMotion));
+         (body.rigid == no_index ? 0 : sizeof(RigidMotion)) + bytes_of_ties(model, body);
+}
+
+/// Calls `visit(records, count)` for what ties have of a body.
+template <class SomeState, class Visit>
+void for_each_tie_record(const Model& model, const Body& owner, Index body, SomeState& state, const Visit& visit) {
+  if (!model.ties.empty()) {
+    visit(state.ties.data() + owner.ties.begin, at(owner.ties.size()));
+    visit(state.tie_work.data() + body, std::size_t{1});
+  }
+  if (model.ties.can_break) {
+    visit(state.moving.data() + owner.nodes.begin, at(owner.nodes.size()));
+  }
 }
 
 /// `sides`: of both kinds together.
@@ -269,6 +289,11 @@ State initial_state(const Model& model) {
   for (const Tie& tie : model.ties.ties) {
     rate_tied_node(tie, state);
   }
+  state.ties.resize(model.ties.ties.size());
+  state.tie_work.resize(model.ties.empty() ? 0 : model.bodies.size());
+  for (Index n = 0; n < model.node_count() && model.ties.can_break; ++n) {
+    state.moving.push_back({model.moving_mass(n), model.moving_inertia(n)});
+  }
   state.sides.resize(model.bodies.size());
   state.edge_sides.resize(model.bodies.size());
   state.wall_drag.resize(model.reference_position.size() * at(model.rubbing_walls));
@@ -301,6 +326,13 @@ void copy_body(const Model& model, const State& from, Index body, State& to) {
   if (owner.rigid != no_index) {
     to.rigid[at(owner.rigid)] = from.rigid[at(owner.rigid)];
   }
+  copy(from.ties, to.ties, at(owner.ties.begin), at(owner.ties.end));
+  if (!from.moving.empty()) {
+    copy(from.moving, to.moving, at(owner.nodes.begin), at(owner.nodes.end));
+  }
+  if (!from.tie_work.empty()) {
+    to.tie_work[at(body)] = from.tie_work[at(body)];
+  }
   to.sides[at(body)] = from.sides[at(body)];
   to.edge_sides[at(body)] = from.edge_sides[at(body)];
   to.ledger[at(body)] = from.ledger[at(body)];
@@ -309,9 +341,11 @@ void copy_body(const Model& model, const State& from, Index body, State& to) {
 
 // Order: motion of the nodes (x, v, omega), their accelerations (a, alpha), the drag of rubbing walls node by node,
 // rows of the elements, of their damping where there is any and of their layers block by block (used lanes only), the
-// motion of a rigid body, the numbers of sides of nodes, of sides of edges and of books (64 bits each), the sides of
-// nodes (node, element, side: 32, 32 and 8 bits, drag), those of edges (first, second, side, drag), the books (other
-// body: 32 bits, five sums), the ledger. All numbers are little-endian and stand side by side.
+// motion of a rigid body, its ties (force, moment, whether broken), where there are ties their work on the body, where
+// they can break what its nodes' accelerations move (mass, inertia), the numbers of sides of nodes, of sides of edges
+// and of books (64 bits each), the sides of nodes (node, element, side: 32, 32 and 8 bits, drag), those of edges
+// (first, second, side, drag), the books (other body: 32 bits, five sums), the ledger. All numbers are little-endian
+// and stand side by side.
 void append_body_bytes(const Model& model, const State& state, Index body, std::vector<std::byte>& bytes) {
   const Body& owner = model.bodies[at(body)];
   const std::vector<ContactSide>& sides = state.sides[at(body)];
@@ -328,6 +362,7 @@ void append_body_bytes(const Model& model, const State& state, Index body, std::
   if (owner.rigid != no_index) {
     writer.write(&state.rigid[at(owner.rigid)], 1);
   }
+  for_each_tie_record(model, owner, body, state, [&](const auto* records, std::size_t n) { writer.write(records, n); });
   const std::array<std::int64_t, 3> counts{static_cast<std::int64_t>(sides.size()),
                                            static_cast<std::int64_t>(edge_sides.size()),
                                            static_cast<std::int64_t>(books.size())};
@@ -377,6 +412,7 @@ bool read_body_bytes(const Model& model, std::span<const std::byte> bytes, Index
   if (owner.rigid != no_index) {
     reader.read(&state.rigid[at(owner.rigid)], 1);
   }
+  for_each_tie_record(model, owner, body, state, [&](auto* records, std::size_t n) { reader.read(records, n); });
   return true;
 }
 

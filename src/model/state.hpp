@@ -95,6 +95,19 @@ struct PairBook {
   friend bool operator==(const PairBook&, const PairBook&) = default;
 };
 
+/// What acts on a tied node but for the tie itself, at the last evaluated forces.
+struct TieState {
+  Vec3d force;            ///< [force]
+  Vec3d moment;           ///< About the node [force*length]; zero where it turns freely
+  std::int64_t broken{};  ///< 1: the tie holds no more
+};
+
+/// What the acceleration of a node moves.
+struct NodeInertia {
+  double mass{};     ///< [mass]
+  double inertia{};  ///< [mass*length^2]
+};
+
 /// The state at a step boundary: all that a restart or another machine needs.
 struct State {
   std::int64_t step{};
@@ -106,6 +119,10 @@ struct State {
                                                   // rotations, and the energy it has taken; empty without it
   AlignedVector<double> layers;                   // [layered blocks][physics::layer_rows][block_lanes]
   std::vector<RigidMotion> rigid;                 // [rigid bodies]; the motion of their nodes follows from it
+  std::vector<TieState> ties;                     // [ties]
+  AlignedVector<NodeInertia> moving;              // [nodes]; empty where no ties can break
+  std::vector<double> tie_work;                   // [bodies]: of ties on them [force*length], integrated; empty where
+                                                  // there are none
   std::vector<std::vector<ContactSide>> sides;    // [bodies]: sorted by (node, element); the body's nodes, and
                                                   // barriers' nodes with its elements
   std::vector<std::vector<EdgeSide>> edge_sides;  // [bodies]: sorted by (first, second); the first edge is the body's,
@@ -135,6 +152,15 @@ void append_body_bytes(const Model& model, const State& state, Index body, std::
 
 /// Hash over step, time and all body hashes in ascending body order.
 [[nodiscard]] std::uint64_t state_hash(const Model& model, const State& state);
+
+/// What the acceleration of a node moves: its mass [mass] and inertia [mass*length^2] unless ties give it more or take
+/// them away.
+[[nodiscard]] inline double moving_mass(const Model& model, const State& state, Index node) noexcept {
+  return state.moving.empty() ? model.moving_mass(node) : state.moving[at(node)].mass;
+}
+[[nodiscard]] inline double moving_inertia(const Model& model, const State& state, Index node) noexcept {
+  return state.moving.empty() ? model.moving_inertia(node) : state.moving[at(node)].inertia;
+}
 
 /// The value of one row of a layered element.
 [[nodiscard]] inline double layer_value(const Model& model, const State& state, Index element, Index row) {

@@ -17,6 +17,8 @@ struct TieDescription {
   std::vector<std::string> surface;  ///< Bodies whose triangles carry the nodes
   double distance{-1.0};             ///< [length]; negative: half thicknesses and a twentieth of them
   bool rotations{true};
+  double strength_normal{-1.0};  ///< [force/length^2]; negative: it does not break
+  double strength_shear{-1.0};   ///< Likewise
   Place place;
 
   static constexpr auto fields = std::tuple{
@@ -32,6 +34,13 @@ struct TieDescription {
             &TieDescription::distance, positive},
       Field{"rotations", "-", "Rotations are joined, too, as by a weld; else the nodes turn freely, as in a hinge.",
             &TieDescription::rotations},
+      Field{"strength_normal", "force/length^2",
+            "Stress across the joint, pulling, at which it breaks where there is no shear: the node's force over its "
+            "share of the tied area. Without a strength ties hold for ever.",
+            &TieDescription::strength_normal, positive},
+      Field{"strength_shear", "force/length^2",
+            "Stress along the joint at which it breaks where nothing pulls across it.", &TieDescription::strength_shear,
+            positive},
   };
 };
 

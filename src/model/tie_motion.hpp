@@ -8,7 +8,7 @@
 /// its carriers.
 namespace fexp::model {
 
-/// Mean rates of the carriers by their weights.
+/// Mean rates of the carriers by their weights; zero where these are held.
 struct TieRates {
   Vec3d velocity;       ///< [length/time]
   Vec3d rotation_rate;  ///< [1/time]
@@ -16,7 +16,7 @@ struct TieRates {
 
 [[nodiscard]] inline TieRates rates_at_carriers(const Tie& tie, const State& state) noexcept {
   TieRates rates;
-  for (std::size_t a = 0; a < 3; ++a) {
+  for (std::size_t a = 0; a < 3 && !tie.held; ++a) {
     const NodeMotion& carrier = state.motion[at(tie.carrier[a])];
     rates.velocity += tie.weight[a] * carrier.velocity;
     rates.rotation_rate += tie.weight[a] * carrier.rotation_rate;
@@ -34,6 +34,18 @@ struct TieRates {
     arm -= tie.weight[a] * state.motion[at(tie.carrier[a])].position;
   }
   return arm;
+}
+
+/// Calls `add(node, mass, inertia)` for what a tie hands to each of its carriers.
+template <class Add>
+void for_each_handed(const Model& model, const Tie& tie, const Add& add) {
+  if (tie.held || tie.rigid != no_index) {
+    return;
+  }
+  const double mass = model.mass[at(tie.node)], inertia = tie.rotations ? model.inertia[at(tie.node)] : 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    add(tie.carrier[a], tie.weight[a] * mass, tie.weight[a] * (inertia + mass * tie.length * tie.length));
+  }
 }
 
 /// Velocity and rotation rate of a tied node between steps, where its carriers have theirs.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,16 @@ struct Tie {
   bool rotations{};       ///< The node turns with the carriers; else freely
   Index description{};    ///< Into Description::ties
   Index rigid{no_index};  ///< Into Model::rigid_bodies, where the carriers are of a rigid body
+  bool held{};            ///< The carriers do not move: the node keeps its mass, and they are handed nothing
+  bool breaks{};          ///< It has a strength
+  bool conditions{};      ///< A condition acts on one of the carriers
+  /// Largest forces along the normal of the triangle and across it [force]: its strengths times the node's share of the
+  /// tied area.
+  double normal_strength{HUGE_VAL};
+  double shear_strength{HUGE_VAL};
+
+  /// Whether the node is among those of Model::fixed, which hold it: for ever, as it does not break.
+  [[nodiscard]] bool is_fixed() const noexcept { return held && !breaks; }
 };
 
 /// A block with elements at tied nodes or carriers. Where arms have a length the masses lumped at the carriers have
@@ -50,18 +61,22 @@ struct TieResult {
 struct Ties {
   std::vector<Tie> ties;           ///< Ascending by node; a body's own lie in Body::ties.
   std::vector<TiedBlock> blocks;   ///< Ascending; a body's own lie in Body::tied_blocks.
-  std::vector<TiedBodies> bodies;  ///< Ascending by both, no barriers
+  std::vector<TiedBodies> bodies;  ///< Ascending by both; none whose carriers are all held
   std::vector<TieResult> results;  ///< [tables of the deck]
   /// Nodes and their carriers, both ways, sorted: no contact between a node and triangles at nodes it is joined with.
   std::vector<std::pair<Index, Index>> joined;
-  /// Masses and inertias that accelerations have to move, shape [nodes]: of carriers with their shares of those of tied
-  /// nodes, which have none left but the inertia where they turn freely. Empty without ties.
+  /// Masses and inertias that accelerations have to move at the start, shape [nodes]: of carriers with their shares of
+  /// those of tied nodes, which have none left but the inertia where they turn freely. Empty without ties.
   std::vector<double> mass;
   std::vector<double> inertia;
 
+  bool can_break{};  ///< Some tie has a strength
+
   [[nodiscard]] bool empty() const noexcept { return ties.empty(); }
-  /// Whether a node is joined with another one.
+  /// Whether a node is joined with another one as long as no tie breaks.
   [[nodiscard]] bool are_joined(Index a, Index b) const noexcept;
+  /// The tie of a node; no_index where it has none.
+  [[nodiscard]] Index tie_of(Index node) const noexcept;
 };
 
 }  // namespace fexp::model

@@ -20,9 +20,9 @@ auto* component(Vector& v, int dof) noexcept {
 /// Books the reaction that a change of acceleration stands for.
 void book_reaction(const model::Model& model, const model::State& state, Index node, const Vec3d& linear,
                    const Vec3d& angular, BodyActions& actions) {
-  const Vec3d force = model.moving_mass(node) * linear;
+  const Vec3d force = moving_mass(model, state, node) * linear;
   actions.force += force;
-  actions.moment += cross(state.motion[at(node)].position, force) + model.moving_inertia(node) * angular;
+  actions.moment += cross(state.motion[at(node)].position, force) + moving_inertia(model, state, node) * angular;
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ PrescribedReport prescribe_velocities(const model::Model& model, model::State& s
     model::NodeAcceleration& acceleration = state.acceleration[at(p.node)];
     Vec3d& rate = p.dof < 3 ? motion.velocity : motion.rotation_rate;
     const Vec3d& change = p.dof < 3 ? acceleration.linear : acceleration.angular;
-    const double inertia = p.dof < 3 ? model.moving_mass(p.node) : model.moving_inertia(p.node);
+    const double inertia = p.dof < 3 ? moving_mass(model, state, p.node) : moving_inertia(model, state, p.node);
     const double present = p.oblique ? dot(rate, p.direction) : *component(rate, p.dof);
     const double kick = half_dt * (p.oblique ? dot(change, p.direction) : *component(change, p.dof));
     const double undamped = present / kept, before = undamped - kick;

@@ -19,7 +19,7 @@ Diagnostics node_sums(const model::Model& model, const model::State& state, Inde
   Diagnostics sum;
   for (Index n = begin; n < end; ++n) {
     const model::NodeMotion& motion = state.motion[at(n)];
-    const double mass = model.moving_mass(n), inertia = model.moving_inertia(n);
+    const double mass = moving_mass(model, state, n), inertia = moving_inertia(model, state, n);
     sum.energies.kinetic += 0.5 * (mass * dot(motion.velocity, motion.velocity) +
                                    inertia * dot(motion.rotation_rate, motion.rotation_rate));
     const Vec3d linear = mass * motion.velocity;
@@ -51,16 +51,6 @@ Diagnostics rigid_sums(const model::RigidBody& body, const model::RigidMotion& m
   return sum;
 }
 
-/// Kinetic energy and momenta.
-Diagnostics motion_sums(const model::Model& model, const model::State& state, const model::Body& body) {
-  if (body.rigid != no_index) {
-    return rigid_sums(model.rigid_bodies[at(body.rigid)], state.rigid[at(body.rigid)]);
-  }
-  return parallel::ordered_fold(
-      body.nodes, piece, Diagnostics{}, [&](Index begin, Index end) { return node_sums(model, state, begin, end); },
-      plus);
-}
-
 double internal_energy(const model::Model& model, const model::State& state, Index begin, Index end) {
   double sum = 0.0;
   for (Index e = begin; e < end; ++e) {
@@ -90,6 +80,16 @@ Diagnostics layer_sums(const model::Model& model, const model::State& state, Ind
 }
 
 }  // namespace
+
+Diagnostics motion_diagnostics(const model::Model& model, const model::State& state, Index index) {
+  const model::Body& body = model.bodies[at(index)];
+  if (body.rigid != no_index) {
+    return rigid_sums(model.rigid_bodies[at(body.rigid)], state.rigid[at(body.rigid)]);
+  }
+  return parallel::ordered_fold(
+      body.nodes, piece, Diagnostics{}, [&](Index begin, Index end) { return node_sums(model, state, begin, end); },
+      plus);
+}
 
 Energies& Energies::operator+=(const Energies& other) noexcept {
   kinetic += other.kinetic;
@@ -124,7 +124,7 @@ Diagnostics& Diagnostics::operator+=(const Diagnostics& other) noexcept {
 Diagnostics body_diagnostics(const model::Model& model, const model::State& state, Index body) {
   const model::Body& owner = model.bodies[at(body)];
   const model::BodyLedger& ledger = state.ledger[at(body)];
-  Diagnostics sum = motion_sums(model, state, owner);
+  Diagnostics sum = motion_diagnostics(model, state, body);
   sum.energies.internal = parallel::ordered_fold(
       owner.elements, piece, 0.0, [&](Index begin, Index end) { return internal_energy(model, state, begin, end); },
       std::plus<>());

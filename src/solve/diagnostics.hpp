@@ -51,6 +51,9 @@ struct Diagnostics {
 /// Diagnostics of one body, summed in fixed pieces so that no number of threads changes a bit.
 [[nodiscard]] Diagnostics body_diagnostics(const model::Model& model, const model::State& state, Index body);
 
+/// Of these the kinetic energy, the momenta and the accelerations' square.
+[[nodiscard]] Diagnostics motion_diagnostics(const model::Model& model, const model::State& state, Index body);
+
 /// Sum over all bodies in ascending order.
 [[nodiscard]] Diagnostics diagnostics(const model::Model& model, const model::State& state);
 

@@ -68,7 +68,7 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
       inertia_ratio_ = maximum(inertia_ratio_, model.rigid_bodies[at(body.rigid)].inertia_ratio);
     }
   }
-  assign_ties(model);
+  assign_ties(model, state);
   for (std::size_t w = 0; w < model.walls.size(); ++w) {
     const auto wall = static_cast<Index>(w);
     if (model.walls[w].body == no_index || std::ranges::find(own_walls_, wall) != own_walls_.end()) {
@@ -88,14 +88,18 @@ void IslandSolver::assign(const model::Model& model, const Patches& patches, con
 }
 
 void IslandSolver::evaluate(const model::Model& model, model::State& state, Workspace& workspace) {
-  const Step still{model, state, workspace, 0.0, state.time, 0.0};
+  evaluate(Step{model, state, workspace, 0.0, state.time, 0.0});
+}
+
+void IslandSolver::evaluate(const Step& still) {
   for (Partial& partial : partials_) {
     partial = {};
   }
+  take_up_masses(still);
   move_walls(still);
   clear_contact(still);
   contact_forces(still);
-  if (!workspace.load.empty()) {
+  if (!still.workspace.load.empty()) {
     load_nodes(still);
   }
   advance_pieces(still, Pass::accelerate);
@@ -121,6 +125,9 @@ IslandReport IslandSolver::advance(const model::Model& model, model::State& stat
     // The last step ends at the very time of the state after it, so that loads evaluated anew there are the same.
     const double end_time = i + 1 == plan.steps ? plan.end_time : start_time + static_cast<double>(i + 1) * plan.dt;
     const Step step{model, state, workspace, plan.dt, end_time, plan.damping};
+    if (can_break_) {
+      break_ties(step, i == 0 ? start_time : start_time + static_cast<double>(i) * plan.dt);
+    }
     if (!opened) {
       opening_half(step);
     }
@@ -191,7 +198,7 @@ void IslandSolver::kick(const Step& step, const Piece& piece, Partial& partial) 
     Vec3d v = motion.velocity + half * acceleration.linear;
     Vec3d w = motion.rotation_rate + half * acceleration.angular;
     if (damping > 0.0) {
-      const double mass = step.model.moving_mass(n), inertia = step.model.moving_inertia(n);
+      const double mass = moving_mass(step.model, step.state, n), inertia = moving_inertia(step.model, step.state, n);
       const Vec3d lost = (mass * (kept - 1.0)) * v;
       partial.impulse += lost;
       partial.angular_impulse += cross(motion.position, lost) + (inertia * (kept - 1.0)) * w;

@@ -118,9 +118,11 @@ class IslandSolver {
   };
   /// A tied node of the island.
   struct IslandTie {
-    Index tie{};                  ///< Into Ties::ties
-    Index rigid_piece{no_index};  ///< First piece of its carrier, where that is rigid
-    Vec3d place;                  ///< Where it belongs at the end of the step, from its carriers where those deform
+    Index tie{};        ///< Into Ties::ties
+    Index body{};       ///< Of the node
+    Index carrier{};    ///< The body that carries it
+    std::size_t piece;  ///< The first one of the body whose sums its force goes to, where the carriers do not take it
+    Vec3d place;        ///< Where it belongs at the end of the step, from its carriers where those deform
   };
   /// What follows the element forces. Where something acts from outside: accelerations, with the closing half step
   /// unless nodes are held that have to be seen to before. Elsewhere: both, and where the next step follows at once its
@@ -165,8 +167,13 @@ class IslandSolver {
   void close_rigid(const Step& step);
   void rate_rigid_nodes(const Step& step);
   void finish_rigid(const Step& step, bool go_on);
-  void assign_ties(const model::Model& model);
+  void evaluate(const Step& still);
+  void assign_ties(const model::Model& model, const model::State& state);
   void carry_ties(const Step& step);
+  static void book_tie(const Step& step, const IslandTie& of_island, double power);
+  void take_up_masses(const Step& step) const;
+  void break_ties(const Step& step, double start_time);
+  [[nodiscard]] double kept_energy(const Step& step, std::size_t piece) const;
   void steer_ties(const Step& step);
   void place_ties(const Step& step);
   void rate_ties(const Step& step) const;
@@ -185,7 +192,8 @@ class IslandSolver {
   std::vector<Index> border_pieces_;  // The others
   std::vector<Index> rigid_pieces_;   // Those of rigid bodies, in none of the two lists above
   std::vector<RigidPart> rigid_;      // Rigid bodies
-  std::vector<IslandTie> ties_;       // Of its bodies' nodes, ascending
+  std::vector<IslandTie> ties_;       // Of its bodies' nodes that hold, ascending
+  std::vector<double> kept_;          // [pieces]: energy before ties break, and its change
   std::vector<Partial> partials_;     // [pieces]
   std::vector<Vec3d> wall_partials_;  // [pieces][walls]: forces
   std::vector<WallTouch> touches_;    // [pieces][walls]: of walls with mass
@@ -203,7 +211,8 @@ class IslandSolver {
   Index rigid_nodes_{};
   double inertia_ratio_{1.0};  // Largest of the rigid bodies and at ties
   bool contact_written_{};
-  bool held_{};  // Nodes of the island are held, prescribed or tied
+  bool held_{};       // Nodes of the island are held, prescribed or tied
+  bool can_break_{};  // Ties of the island have a strength
   bool prescribed_{};
 };
 

@@ -30,7 +30,7 @@ Taken stop_nodes(const model::Model& model, model::State& state, const FreePart&
   Taken taken;
   for (Index n = begin; n < end; ++n) {
     model::NodeMotion& motion = state.motion[at(n)];
-    const double mass = model.moving_mass(n), inertia = model.moving_inertia(n);
+    const double mass = moving_mass(model, state, n), inertia = moving_inertia(model, state, n);
     Vec3d v = motion.velocity, w = motion.rotation_rate;
     free.reduce(n, v, w);
     // What is prescribed is orthogonal to the rest, which therefore has an energy of its own.

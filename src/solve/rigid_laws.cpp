@@ -97,8 +97,12 @@ void kick_rigid(const model::Model& model, const RigidBody& body, const RigidHal
                 RigidBooks& books) {
   motion.velocity += (half.half_dt / body.mass) * motion.force;
   motion.angular_momentum += half.half_dt * motion.moment;
+  const double kept = 1.0 / (1.0 + half.damping * half.half_dt);
   if (half.damping > 0.0) {
-    const double kept = 1.0 / (1.0 + half.damping * half.half_dt);
+    if (!body.held_rotations.empty() && !body.prescribes_rotation) {
+      // There is no motion about these, of which damping could take anything.
+      hold_rotation(model, body, half, motion, books);
+    }
     const Vec3d lost = (body.mass * (kept - 1.0)) * motion.velocity;
     books.impulse += lost;
     books.angular_impulse += cross(motion.centre, lost) + (kept - 1.0) * motion.angular_momentum;
@@ -114,12 +118,13 @@ void kick_rigid(const model::Model& model, const RigidBody& body, const RigidHal
     }
     const double present = dot(motion.velocity, p.direction);
     const double change = half.half_dt / body.mass * dot(motion.force, p.direction);
-    const double before = present - change;
+    const double undamped = present / kept, before = undamped - change;
     const double after =
         prescribed_velocity(model, p, dot(body.initial_velocity, p.direction),
                             dot(motion.centre - body.centre, p.direction), half.half, half.time, half.half_dt);
     const double middle = half.half == HalfStep::opening ? after : before;
-    books.work += 0.5 * body.mass * (after - before) * (after + before) - body.mass * change * middle;
+    const double damped = 0.5 * body.mass * (1.0 - kept * kept) * undamped * undamped;
+    books.work += 0.5 * body.mass * (after - before) * (after + before) - body.mass * change * middle + damped;
     const Vec3d impulse = (body.mass * (after - present)) * p.direction;
     books.impulse += impulse;
     books.angular_impulse += cross(motion.centre, impulse);

@@ -17,8 +17,9 @@ Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
     inverse_inertia.push_back({1.0 / model.moving_mass(node), 1.0 / model.moving_inertia(node)});
   }
   for (const model::Tie& tie : model.ties.ties) {
-    InverseInertia& inverse = inverse_inertia[at(tie.node)];
-    inverse = {1.0, tie.rotations ? 1.0 : inverse.inertia};
+    if (!tie.is_fixed()) {
+      carry(tie);
+    }
   }
   contact.force.resize(model.reference_position.size());
   contact.stiffness.resize(model.reference_position.size());
@@ -37,6 +38,11 @@ Workspace::Workspace(const model::Model& model, SelectedKernel selected_kernel)
   external = holds_rigid || !load.empty() || model.run.damping > 0.0 || model.run.is_static() || !model.walls.empty() ||
              !model.fixed.empty() || !model.prescribed.empty() || !model.symmetry.empty() || !model.oblique.empty() ||
              !model.ties.empty();
+}
+
+void Workspace::carry(const model::Tie& tie) noexcept {
+  InverseInertia& inverse = inverse_inertia[at(tie.node)];
+  inverse = {1.0, tie.rotations ? 1.0 : inverse.inertia};
 }
 
 }  // namespace fexp::solve

@@ -29,6 +29,9 @@ struct BodyActions {
 struct Workspace {
   explicit Workspace(const model::Model& model, SelectedKernel selected_kernel);
 
+  /// Has the acceleration of a tied node be its force, whose inertia must be its own where it turns freely.
+  void carry(const model::Tie& tie) noexcept;
+
   SelectedKernel kernel;
   std::vector<physics::ShellStiffness> sections;  // [sections]
   Patches patches;

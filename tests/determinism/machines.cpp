@@ -36,6 +36,7 @@ const std::vector<Scene>& scenes() {
                                       {"damped_shot", test::damped_shot, 0.06},
                                       {"rigid_and_soft", test::rigid_and_soft, 0.12},
                                       {"tied_panel", test::tied_panel, 0.1},
+                                      {"torn_panel", test::torn_panel, 0.1},
                                       {"rigid_machine", test::rigid_machine, 0.1},
                                       {"walls_with_mass", test::walls_with_mass, 0.12},
                                       {"swarm", test::swarm, 0.1}};

@@ -62,6 +62,11 @@ const std::vector<Scene>& scenes() {
        [](const test::Outcome& o) {
          return o.extremes.most_active_pairs > 5 && o.extremes.energy_error < 0.01 && o.extremes.most_islands <= 2;
        }},
+      {"torn_panel", test::torn_panel, 0.1,
+       [](const test::Outcome& o) {
+         return o.extremes.most_active_pairs > 5 && o.extremes.energy_error < 0.01 && o.broken > 60 && o.broken < 130 &&
+                o.extremes.most_islands > o.extremes.fewest_islands;
+       }},
       {"rigid_machine", test::rigid_machine, 0.1,
        [](const test::Outcome& o) { return o.extremes.most_active_pairs > 20; }},
       {"walls_with_mass", test::walls_with_mass, 0.12,
@@ -99,9 +104,10 @@ TEST_P(same_bits, for_any_number_of_threads_and_any_kernel) {
   test::Outcome reference;
   parallel::with_threads(1, [&] { reference = test::run_scene(model, GetParam().duration, KernelChoice::scalar); });
   const cluster::RunExtremes& x = reference.extremes;
-  std::printf("%ld epochs, %ld rolled back, %d to %d islands, %d pairs, %zu own sides, energy error %.1e\n",
-              static_cast<long>(x.epochs), static_cast<long>(x.rollbacks), x.fewest_islands, x.most_islands,
-              x.most_active_pairs, reference.own_sides, x.energy_error);
+  std::printf(
+      "%ld epochs, %ld rolled back, %d to %d islands, %d pairs, %zu own sides, %ld broken ties, energy error %.1e\n",
+      static_cast<long>(x.epochs), static_cast<long>(x.rollbacks), x.fewest_islands, x.most_islands,
+      x.most_active_pairs, reference.own_sides, static_cast<long>(reference.broken), x.energy_error);
   ASSERT_TRUE(GetParam().worth(reference));
   for (const int threads : thread_counts) {
     SCOPED_TRACE(std::to_string(threads) + " threads");

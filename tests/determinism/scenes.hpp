@@ -328,6 +328,45 @@ inline model::Description walls_with_mass() {
   return d;
 }
 
+/// A doubler that is glued on a panel, which a ball tears off in part, and a strap that hangs as by hinges on a block
+/// that is held, until its weight is too much. Two glued plates far away spin apart.
+inline model::Description torn_panel() {
+  model::Description d = with_contact(0.02);
+  const auto glue = [&](const std::string& body, const std::string& surface, double normal, double shear) {
+    d.node_sets.emplace_back().name = body;
+    d.node_sets.back().bodies = {body};
+    model::TieDescription& tie = d.ties.emplace_back();
+    tie.name = tie.set = body;
+    tie.surface = {surface};
+    tie.strength_normal = normal;
+    tie.strength_shear = shear;
+  };
+  add_body(d, "panel", plate(1.2, 12));
+  add_body(d, "doubler", plate(0.6, 8)).translate = {0.3, 0.3, 0.02};
+  add_body(d, "block", plate(0.5, 3)).translate = {2.0, 0.0, 0.0};
+  add_body(d, "strap", plate(0.3, 5)).translate = {2.1, 0.1, -0.02};
+  model::BodyDescription& ball = add_body(d, "ball", sphere(0.3, 6));
+  ball.translate = {0.5, 0.5, -0.33};
+  ball.velocity = {0.5, 0.0, 8.0};
+  add_body(d, "lower", plate(0.6, 6)).translate = {5.0, 0.0, 0.0};
+  add_body(d, "upper", plate(0.4, 5)).translate = {5.4, 0.1, 0.02};
+  d.bodies[5].angular_velocity = d.bodies[6].angular_velocity = {0.0, 2.0, 40.0};
+  d.bodies[6].velocity = {0.04, 12.0, -0.6};
+  glue("doubler", "panel", 6.0e4, 4.0e4);
+  glue("strap", "block", 3.0e3, 3.0e3);
+  d.ties.back().rotations = false;
+  glue("upper", "lower", 1.0e3, 1.0e3);
+  d.node_sets.emplace_back().name = "block";
+  d.node_sets.back().bodies = {"block"};
+  fix(d, "block", {"x", "y", "z", "rx", "ry", "rz"});
+  d.curves.push_back({"jerk", {{0.0, 0.0}, {0.1, 1.0}}, {}});
+  d.gravity.push_back({{0.0, 0.0, -200.0}, "jerk", {}});
+  add_box_set(d, "rim", {-0.01, -0.01, -0.01}, {0.01, 1.21, 0.01});
+  fix(d, "rim", {"x", "y", "z"});
+  d.run.energy_drift_limit = 1.0;
+  return d;
+}
+
 /// What must be the same however a scene is computed, and what proves that the scene is worth computing.
 /// A panel with a web welded to it, a flap that hangs on it by a hinge and on a rigid block at the other end; the panel
 /// is driven along one edge and hit by a ball.
@@ -372,6 +411,7 @@ struct Outcome {
   Index deleted{};          ///< At the end
   double damping{};         ///< Energy that stiffness damping has taken in all
   int stops{};              ///< Epochs after which motion was stopped
+  std::int64_t broken{};    ///< Ties at the end
   std::size_t own_sides{};  ///< Sides between nodes and triangles of one body, seen at ends of epochs
 };
 
@@ -406,6 +446,9 @@ inline Outcome run_scene(const model::Model& model, double duration, solve::Kern
       const Index row = physics::layer_points + p * physics::point_rows + physics::point_strain;
       outcome.plastic_strain = std::max(outcome.plastic_strain, model::layer_value(model, simulation.state(), e, row));
     }
+  }
+  for (const model::TieState& tie : simulation.state().ties) {
+    outcome.broken += tie.broken;
   }
   outcome.state_hash = model::state_hash(model, simulation.state());
   outcome.extremes = simulation.extremes();

@@ -40,7 +40,8 @@ class Expected:
     def point_data(self, frame):
         n = np.arange(self.nodes)
         names = {"displacement": 0, "velocity": 3, "rotation_rate": 6, "contact_force": 9}
-        return {name: made_up(n, np.arange(c, c + 3), frame) for name, c in names.items()}
+        data = {name: made_up(n, np.arange(c, c + 3), frame) for name, c in names.items()}
+        return data | {"tie_force": np.zeros((self.nodes, 3)), "tied": np.zeros(self.nodes)}
 
     def cell_data(self, frame):
         row = made_up(np.arange(self.elements), np.arange(12), frame)

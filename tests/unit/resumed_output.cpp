@@ -27,7 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 using test::TemporaryDirectory;
 
-/// Two balls that meet above a plane, with every kind of history; intervals that are no multiples of each other.
+/// Two balls that meet above a plane, one with a tile that is glued on and comes off, with every kind of history;
+/// intervals that are no multiples of each other.
 const std::string deck_text = R"(
 [run]
 duration = 0.06
@@ -53,6 +54,22 @@ section = "skin"
 mesh = {kind = "cubed_sphere", radius = 0.5, cells = 2}
 translate = [0.53, 0.1, 0.6]
 velocity = [-6, 0, 0]
+[[body]]
+name = "tile"
+section = "skin"
+mesh = {kind = "plate", length_x = 0.1, length_y = 0.1, cells_x = 1, cells_y = 1}
+translate = [-0.58, -0.05, 1.04]
+velocity = [6, 0, -3]
+[[node_set]]
+name = "tile"
+bodies = ["tile"]
+[[tie]]
+name = "glue"
+set = "tile"
+surface = ["left"]
+distance = 0.1
+strength_normal = 1000.0
+strength_shear = 1000.0
 [[node_set]]
 name = "some"
 box = {low = [-2, -2, 0.9], high = [2, 2, 2]}
@@ -227,8 +244,8 @@ void expect_same_results(const fs::path& one, const fs::path& other) {
 
 /// All files but the log, which has times of day.
 void expect_same_files(const fs::path& one, const fs::path& other) {
-  for (const char* name : {"energies.csv", "momenta.csv", "steps.csv", "walls.csv", "nodes.csv", "elements.csv",
-                           "bodies.csv", "hashes.csv", "results.xdmf2"}) {
+  for (const char* name : {"energies.csv", "momenta.csv", "steps.csv", "walls.csv", "ties.csv", "nodes.csv",
+                           "elements.csv", "bodies.csv", "hashes.csv", "results.xdmf2"}) {
     EXPECT_EQ(io::read_whole(one / name), io::read_whole(other / name)) << name;
   }
   expect_same_results(one / "results.vtkhdf", other / "results.vtkhdf");

@@ -184,6 +184,27 @@ TEST(rigid_bodies, stay_inside_the_way_that_they_are_allowed_in_one_step) {
   }
 }
 
+TEST(rigid_bodies, lose_nothing_to_damping_where_they_are_held_or_told_to_move) {
+  // A force at a corner that moves nothing: what damping took of each half step would be energy from nowhere.
+  auto d = rigid_plate();
+  test::add_box_set(d, "corner", {-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01});
+  d.forces.push_back({"corner", {300.0, 200.0, 600.0}, {}, false, "", {}});
+  d.run.damping = 50.0;
+  test::fix(d, "plate", {"y", "z", "rx", "ry", "rz"});
+  for (const double velocity : {0.0, 0.5}) {
+    d.prescribed.clear();
+    d.prescribed.push_back({"plate", "x", velocity, "", {}});
+    d.bodies[0].velocity = {velocity, 0.0, 0.0};
+    const model::Model model = test::build(d);
+    test::DirectRun direct(model);
+    const double before = solve::diagnostics(model, direct.state).energies.balance();
+    run(model, direct, 0.05, 40);
+    const solve::Energies energies = solve::diagnostics(model, direct.state).energies;
+    EXPECT_NEAR(energies.balance(), before, 1e-12 * (1.0 + energies.kinetic)) << velocity;
+    EXPECT_NEAR(energies.kinetic, 20.0 * velocity * velocity, 1e-12);
+  }
+}
+
 TEST(rigid_bodies, have_loads_on_single_nodes_act_on_the_whole_body) {
   auto d = rigid_plate();
   test::add_box_set(d, "corner", {-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01});

@@ -42,6 +42,19 @@ Model two_plates_on_walls() {
   return test::build(d);
 }
 
+/// The same, one glued on the other; with a strength or without.
+Model two_glued_plates(double strength) {
+  Description d = test::description(steel, 0.01);
+  test::add_body(d, "p", Plate{1.0, 1.0, 3, 3, "one"}).array = Array{{1, 1, 2}, {0.0, 0.0, 0.01}};
+  d.node_sets.emplace_back().name = "upper";
+  d.node_sets.back().bodies = {"p[0,0,1]"};
+  TieDescription& tie = d.ties.emplace_back();
+  tie.name = tie.set = "upper";
+  tie.surface = {"p[0,0,0]"};
+  tie.strength_normal = strength;
+  return test::build(d);
+}
+
 /// Records of doubles alone as the doubles they are.
 template <class Records>
 double* numbers(Records& records) {
@@ -410,6 +423,54 @@ TEST(state_bytes, layers_are_read_back_copied_and_hashed_with_their_body) {
         value = -value;
         EXPECT_EQ(state_hash(m, changed) != before, lane < block.count) << "a padding lane must not count";
       }
+    }
+  }
+}
+
+TEST(state_bytes, ties_follow_the_rows_and_are_read_back_copied_and_hashed_with_their_body) {
+  for (const double strength : {-1.0, 1.0}) {
+    const Model m = two_glued_plates(strength);
+    ASSERT_EQ(m.bodies[1].ties.size(), 16);
+    State from = random_state(m, 1);
+    for (std::size_t t = 0; t < from.ties.size(); ++t) {
+      from.ties[t] = {{0.5 + static_cast<double>(t), 2.0, 3.0}, {4.0, 5.0, 6.0}, static_cast<std::int64_t>(t % 2)};
+    }
+    from.tie_work = {7.0, 8.0};
+    for (NodeInertia& node : from.moving) {
+      node = {9.0, 10.0};
+    }
+    const auto bytes = bytes_of(m, from, 1);
+    State to = initial_state(m);
+    ASSERT_TRUE(read_body_bytes(m, bytes, 1, to));
+    EXPECT_EQ(bytes_of(m, to, 1), bytes);
+    EXPECT_EQ(to.ties[3].force.x, 3.5);
+    EXPECT_EQ(to.ties[3].broken, 1);
+    EXPECT_EQ(to.tie_work[1], 8.0);
+    EXPECT_EQ(to.tie_work[0], 0.0);
+    State copied = initial_state(m);
+    copy_body(m, from, 1, copied);
+    EXPECT_EQ(bytes_of(m, copied, 1), bytes);
+    // Behind the rows: 15 doubles a node, 12 rows of 18 elements.
+    const std::size_t place = (15 * 16 + 12 * 18) * sizeof(double);
+    double force = 0.0, work = 0.0;
+    std::memcpy(&force, bytes.data() + place, sizeof(force));
+    std::memcpy(&work, bytes.data() + place + 16 * sizeof(TieState), sizeof(work));
+    EXPECT_EQ(force, 0.5);
+    EXPECT_EQ(work, 8.0);
+    EXPECT_EQ(from.moving.empty(), strength < 0.0);
+    if (strength > 0.0) {
+      std::memcpy(&work, bytes.data() + place + 16 * sizeof(TieState) + 2 * sizeof(double), sizeof(work));
+      EXPECT_EQ(work, 10.0);
+    }
+    for (const auto change : {0, 1, 2}) {
+      State other = from;
+      other.ties[5].broken += change == 0 ? 1 : 0;
+      other.tie_work[1] += change == 1 ? 1.0 : 0.0;
+      if (change == 2 && !other.moving.empty()) {
+        other.moving[at(m.bodies[1].nodes.begin)].mass = 11.0;
+      }
+      EXPECT_EQ(body_hash(m, other, 1) != body_hash(m, from, 1), change < 2 || strength > 0.0);
+      EXPECT_EQ(body_hash(m, other, 0), body_hash(m, from, 0));
     }
   }
 }

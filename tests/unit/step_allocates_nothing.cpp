@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "model/tie_forces.hpp"
 #include "parallel/parallel.hpp"
 #include "support/models.hpp"
 
@@ -86,6 +87,37 @@ model::Model busy_plate() {
   d.planes[0].velocity = {0.0, 0.0, 0.1};
   d.forces.push_back({"middle", {0.0, 0.0, 1.0}, {0.0, 0.1, 0.0}, true, "ramp", {}});
   return test::build(d);
+}
+
+/// A plate that is glued to one that is held, and pulled off by a pressure that reaches the strength after 25 steps.
+model::Model glued_plate() {
+  auto d = test::description({1000.0, 1.0e6, 0.4}, 0.02);
+  const model::Plate mesh{1.0, 1.0, 20, 20, "one"};
+  test::add_body(d, "block", mesh);
+  test::add_body(d, "plate", mesh).translate = {0.0, 0.0, -0.02};
+  for (const char* name : {"block", "plate"}) {
+    d.node_sets.emplace_back().name = name;
+    d.node_sets.back().bodies = {name};
+  }
+  test::fix(d, "block", {"x", "y", "z", "rx", "ry", "rz"});
+  model::TieDescription& tie = d.ties.emplace_back();
+  tie.name = tie.set = "plate";
+  tie.surface = {"block"};
+  tie.strength_normal = 1.0;
+  d.pressure.push_back({{"plate"}, "", 1.0, "ramp", {}});
+  d.curves.push_back({"ramp", {{0.0, 0.0}, {1.0, 1.0}}, {}});
+  const double dt = 0.5 * test::build(d).first_critical_step;
+  d.curves[0].points[1] = {25.0 * dt, 1.0};
+  return test::build(d);
+}
+
+TEST(step, allocates_nothing_when_ties_break) {
+  const model::Model model = glued_plate();
+  test::DirectRun run(model);
+  const double dt = 0.5 * model.first_critical_step;
+  run.advance(dt, 1);
+  EXPECT_EQ(allocations_of([&] { run.advance(dt, 50); }), 0);
+  EXPECT_EQ(model::broken_ties(model, run.state, 0), 441);
 }
 
 TEST(step, allocates_nothing_after_its_first_call) {

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "io/hdf5_driver.hpp"
 #include "io/output_error.hpp"
 
 namespace fexp::io::hdf5 {
@@ -71,7 +72,7 @@ Handle access_list(const File* file) {
   config.evictions_enabled = false;
   good = good && H5Pset_mdc_config(list.id(), &config) >= 0 && H5Pset_file_locking(list.id(), false, true) >= 0 &&
          H5Pset_meta_block_size(list.id(), 0) >= 0 && H5Pset_fclose_degree(list.id(), H5F_CLOSE_STRONG) >= 0 &&
-         H5Pset_cache(list.id(), 0, 0, 0, 0.0) >= 0;
+         H5Pset_cache(list.id(), 0, 0, 0, 0.0) >= 0 && H5Pset_driver(list.id(), entries_first_driver(), nullptr) >= 0;
   if (!good) {
     file->fail("set up HDF5");
   }

@@ -22,6 +22,9 @@ from check_vtkhdf import check_values
 from probe import DIED, Expected, run_probe
 from vtkhdf_layout import LayoutError, Results
 
+# Of a call that writes: nothing, three eighths, and what would count an entry of an index that is not there.
+PARTS = ({"share": 0}, {"share": 3}, {"bytes": 24})
+
 
 def complete_frames(lines):
     return max([0] + [int(line.split()[1]) for line in lines if line.startswith("frame")])
@@ -40,24 +43,24 @@ def check_remains(path, expected, complete, where):
         raise AssertionError(f"killed {where}: {error}") from error
 
 
-def die_at_every_write(program, folder, share, frames, resumed):
-    """Kills the probe at each write; `share` eighths of that write still happen."""
+def die_at_every_write(program, folder, part, frames, resumed):
+    """Kills the probe at each write, of which a part still happens."""
     path, expected = folder / "results.vtkhdf", Expected(2, 3)
     options = {"bodies": 2, "cells": 3, "tell": 1, "expected": frames}
     _, lines = run_probe(program, path, frames=frames, **options)
     first = int(lines[0].split()[1]) + 1
     last = int(lines[-1].split()[1])
     for write in range(first, last + 1):
-        code, lines = run_probe(program, path, frames=frames, die_at=write, share=share, **options)
+        code, lines = run_probe(program, path, frames=frames, die_at=write, **part, **options)
         assert code == DIED, f"write {write} was not reached"
-        found = check_remains(path, expected, complete_frames(lines), f"at write {write}, {share}/8 of it done")
+        found = check_remains(path, expected, complete_frames(lines), f"at write {write}, {part} of it done")
         if resumed:
             run_probe(program, path, frames=frames + 2, resume=found, **options)
             check_remains(path, expected, frames + 2, f"at write {write} and gone on")
     return last - first + 1
 
 
-def die_while_going_on(program, folder, share):
+def die_while_going_on(program, folder, part):
     """Kills the probe at each write while it drops two of five frames and writes three new ones."""
     path, kept, expected = folder / "results.vtkhdf", folder / "five.vtkhdf", Expected(2, 3)
     options = {"bodies": 2, "cells": 3, "tell": 1, "expected": 8}
@@ -66,8 +69,8 @@ def die_while_going_on(program, folder, share):
     while code == DIED:
         write += 1
         shutil.copy(kept, path)
-        code, lines = run_probe(program, path, frames=6, resume=3, die_at=write, share=share, **options)
-        found = check_remains(path, expected, None, f"at write {write} of going on, {share}/8 of it done")
+        code, lines = run_probe(program, path, frames=6, resume=3, die_at=write, **part, **options)
+        found = check_remains(path, expected, None, f"at write {write} of going on, {part} of it done")
         complete = complete_frames(lines)
         assert found >= max(3, complete), f"{found} frames are left of {complete} at write {write} of going on"
         run_probe(program, path, frames=7, resume=min(found, 3), **options)
@@ -99,12 +102,12 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name) / "run"
         folder.mkdir()
-        for share in (0, 3):
-            writes = die_at_every_write(program, folder, share, frames=4, resumed=share == 3)
-            print(f"ended at each of {writes} writes with {share}/8 of it done: every complete frame is there")
-        for share in (0, 3):
-            writes = die_while_going_on(program, folder, share)
-            print(f"ended at each of {writes} writes while going on, {share}/8 of it done: the same")
+        for part in PARTS:
+            writes = die_at_every_write(program, folder, part, frames=4, resumed=part == PARTS[1])
+            print(f"ended at each of {writes} writes with {part} of it done: every complete frame is there")
+        for part in PARTS:
+            writes = die_while_going_on(program, folder, part)
+            print(f"ended at each of {writes} writes while going on, {part} of it done: the same")
         counts = kill_at_random(program, folder, kills)
         print(f"killed {len(counts)} times at random, {min(counts)} to {max(counts)} frames: all there")
 

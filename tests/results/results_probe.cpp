@@ -21,9 +21,10 @@
 
 namespace {
 
-long writes = 0;        // calls that change a file so far
-long last_write = -1;   // die at this one; -1: never
-int share_written = 0;  // eighths of that call's bytes that still reach the file
+long writes = 0;         // calls that change a file so far
+long last_write = -1;    // die at this one; -1: never
+int share_written = 0;   // eighths of that call's bytes that still reach the file
+long bytes_written = 0;  // or so many bytes, if any
 
 /// Counts a call that would write `size` bytes. True when the process is to end after the given part of them.
 bool ends_here() { return ++writes == last_write; }
@@ -36,7 +37,9 @@ bool ends_here() { return ++writes == last_write; }
 // NOLINTBEGIN(readability-inconsistent-declaration-parameter-name)
 extern "C" ssize_t pwrite64(int fd, const void* data, size_t size, off64_t offset) {
   if (ends_here()) {
-    syscall(SYS_pwrite64, fd, data, size * static_cast<size_t>(share_written) / 8, offset);
+    const size_t bytes = static_cast<size_t>(bytes_written);
+    syscall(SYS_pwrite64, fd, data, bytes > 0 && bytes < size ? bytes : size * static_cast<size_t>(share_written) / 8,
+            offset);
     die();
   }
   return syscall(SYS_pwrite64, fd, data, size, offset);
@@ -94,6 +97,8 @@ Arguments parse(int count, char** values) {
       last_write = std::stol(value);
     } else if (name == "share") {
       share_written = std::stoi(value);
+    } else if (name == "bytes") {
+      bytes_written = std::stol(value);
     } else if (name == "xdmf") {
       arguments.xdmf = value;
     } else if (name == "tell") {

@@ -81,13 +81,13 @@ Diagnostics layer_sums(const model::Model& model, const model::State& state, Ind
 
 }  // namespace
 
-Diagnostics motion_diagnostics(const model::Model& model, const model::State& state, Index index) {
-  const model::Body& body = model.bodies[at(index)];
-  if (body.rigid != no_index) {
-    return rigid_sums(model.rigid_bodies[at(body.rigid)], state.rigid[at(body.rigid)]);
+Diagnostics motion_diagnostics(const model::Model& model, const model::State& state, Index body) {
+  const model::Body& owner = model.bodies[at(body)];
+  if (owner.rigid != no_index) {
+    return rigid_sums(model.rigid_bodies[at(owner.rigid)], state.rigid[at(owner.rigid)]);
   }
   return parallel::ordered_fold(
-      body.nodes, piece, Diagnostics{}, [&](Index begin, Index end) { return node_sums(model, state, begin, end); },
+      owner.nodes, piece, Diagnostics{}, [&](Index begin, Index end) { return node_sums(model, state, begin, end); },
       plus);
 }
 

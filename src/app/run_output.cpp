@@ -5,11 +5,14 @@
 
 #include <exception>
 #include <functional>
+#include <string>
+#include <string_view>
 #include <system_error>
 
 #include "app/fault_report.hpp"
 #include "app/schedule.hpp"
 #include "io/atomic_file.hpp"
+#include "io/expectation.hpp"
 #include "io/vtkhdf_reader.hpp"
 
 namespace fexp::app {
@@ -200,8 +203,8 @@ std::vector<std::pair<std::string, std::string>> files_of(const io::RunDirectory
       {"versions", directory.versions().string()}, {"log", directory.log().string()},
       {"summary", directory.summary().string()},   {"hashes", directory.hashes().string()},
       {"fault", directory.fault().string()}};
-  for (const char* name : {"energies", "momenta", "steps", "walls", "nodes", "bodies"}) {
-    files.emplace_back(name, directory.history(name).string());
+  for (const std::string_view name : io::Expectation::histories) {
+    files.emplace_back(name, directory.history(std::string(name)).string());
   }
   // The summary is about to be written.
   std::erase_if(files, [](const auto& file) { return file.first != "summary" && !fs::exists(file.second); });

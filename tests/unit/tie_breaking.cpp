@@ -10,29 +10,17 @@
 #include "model/tie_forces.hpp"
 #include "solve/tie_release.hpp"
 #include "support/descriptions.hpp"
+#include "support/ties.hpp"
 
 namespace fexp {
 namespace {
 
 constexpr double layer = 0.05;
 
-model::Plate board(double x, double y, int cells_x, int cells_y) {
-  model::Plate p;
-  p.length_x = x;
-  p.length_y = y;
-  p.cells_x = cells_x;
-  p.cells_y = cells_y;
-  return p;
-}
-
 model::TieDescription& bond(model::Description& d, const std::string& set, const std::string& surface,
                             double strength) {
-  d.node_sets.emplace_back().name = set;
-  d.node_sets.back().bodies = {set};
-  model::TieDescription& t = d.ties.emplace_back();
-  t.name = "bond of " + set;
-  t.set = set;
-  t.surface = {surface};
+  test::name_nodes(d, set, set);
+  model::TieDescription& t = test::tie(d, set, {surface});
   t.strength_normal = t.strength_shear = strength;
   return t;
 }
@@ -40,8 +28,8 @@ model::TieDescription& bond(model::Description& d, const std::string& set, const
 /// A small plate on a larger one, in free motion. The spin pulls at the bond.
 model::Description spinning(double strength) {
   auto d = test::description(test::rubber, layer);
-  test::add_body(d, "lower", board(1.0, 0.6, 6, 4));
-  test::add_body(d, "upper", board(0.5, 0.3, 5, 3)).translate = {0.45, 0.25, layer};
+  test::add_body(d, "lower", test::plate(1.0, 0.6, 6, 4));
+  test::add_body(d, "upper", test::plate(0.5, 0.3, 5, 3)).translate = {0.45, 0.25, layer};
   bond(d, "upper", "lower", strength);
   const Vec3d rate{2.0, 1.0, 5.0};
   d.bodies[0].angular_velocity = d.bodies[1].angular_velocity = rate;
@@ -53,11 +41,10 @@ model::Description spinning(double strength) {
 /// A block that is held, and a plate on it.
 model::Description on_block(double strength) {
   auto d = test::description(test::rubber, layer);
-  test::add_body(d, "block", board(1.0, 0.8, 3, 2));
-  test::add_body(d, "plate", board(0.6, 0.4, 5, 4)).translate = {0.15, 0.15, layer};
+  test::add_body(d, "block", test::plate(1.0, 0.8, 3, 2));
+  test::add_body(d, "plate", test::plate(0.6, 0.4, 5, 4)).translate = {0.15, 0.15, layer};
   bond(d, "plate", "block", strength);
-  d.node_sets.emplace_back().name = "block";
-  d.node_sets.back().bodies = {"block"};
+  test::name_nodes(d, "block", "block");
   test::fix(d, "block", {"x", "y", "z", "rx", "ry", "rz"});
   return d;
 }
@@ -260,8 +247,8 @@ TEST(tie_breaking, has_a_step_that_is_stable_whatever_is_left) {
   // Nodes on the surface itself bring mass to carriers, those off it moments of mass: with both, and some gone, the
   // ratio may be larger than with all.
   auto d = test::description(test::rubber, 0.1);
-  test::add_body(d, "lower", board(0.8, 0.8, 8, 8));
-  test::add_body(d, "upper", board(0.8, 0.8, 8, 8)).translate = {0.0, 0.0, 0.1};
+  test::add_body(d, "lower", test::plate(0.8, 0.8, 8, 8));
+  test::add_body(d, "upper", test::plate(0.8, 0.8, 8, 8)).translate = {0.0, 0.0, 0.1};
   bond(d, "upper", "lower", 6000.0);
   d.run.safety = 1.0;
   test::add_box_set(d, "corner", {-0.01, -0.01, -0.01}, {0.01, 0.01, 0.11});
@@ -322,8 +309,7 @@ TEST(tie_breaking, releases_a_node_with_both_momenta) {
 TEST(tie_breaking, with_conditions_at_carriers_closes_the_books) {
   auto d = spinning(100.0);
   d.bodies[0].velocity = d.bodies[0].angular_velocity = d.bodies[1].velocity = d.bodies[1].angular_velocity = {};
-  d.node_sets.emplace_back().name = "lower";
-  d.node_sets.back().bodies = {"lower"};
+  test::name_nodes(d, "lower", "lower");
   d.curves.push_back({"jerk", {{0.0, 0.0}, {0.02, 1.0}, {1.0, 1.0}}, {}});
   d.prescribed.push_back({"lower", "z", -3.0, "jerk", {}});
   d.prescribed.push_back({"lower", "ry", 4.0, "jerk", {}});
@@ -357,8 +343,8 @@ TEST(tie_breaking, of_some_nodes_gives_the_least_step_that_is_asked_for) {
   // Ties take a part of the step; elements at them get mass for that as well.
   for (const double strength : {-1.0, 1.0e9}) {
     auto d = test::description(test::rubber, 0.1);
-    test::add_body(d, "lower", board(0.8, 0.8, 8, 8));
-    test::add_body(d, "upper", board(0.8, 0.8, 8, 8)).translate = {0.0, 0.0, 0.1};
+    test::add_body(d, "lower", test::plate(0.8, 0.8, 8, 8));
+    test::add_body(d, "upper", test::plate(0.8, 0.8, 8, 8)).translate = {0.0, 0.0, 0.1};
     bond(d, "upper", "lower", strength);
     const double usual = test::build(d).first_step();
     for (const double factor : {0.95, 1.0, 3.0}) {

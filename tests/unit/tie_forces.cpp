@@ -11,44 +11,24 @@
 #include "cluster/simulation.hpp"
 #include "model/capture.hpp"
 #include "support/descriptions.hpp"
+#include "support/ties.hpp"
 
 namespace fexp {
 namespace {
 
 constexpr double height = 0.05;
 
-model::Plate rectangle(double x, double y, int cells_x, int cells_y) {
-  model::Plate p;
-  p.length_x = x;
-  p.length_y = y;
-  p.cells_x = cells_x;
-  p.cells_y = cells_y;
-  return p;
-}
-
-void name_body(model::Description& d, const std::string& body) {
-  d.node_sets.emplace_back().name = body;
-  d.node_sets.back().bodies = {body};
-}
-
-void glue(model::Description& d, const std::string& set, const std::string& surface) {
-  model::TieDescription& tie = d.ties.emplace_back();
-  tie.name = "tie " + std::to_string(d.ties.size());
-  tie.set = set;
-  tie.surface = {surface};
-}
-
 void hold(model::Description& d, const std::string& set) { test::fix(d, set, {"x", "y", "z", "rx", "ry", "rz"}); }
 
 /// A strip that stands out from a block under it, to which its root of 0.2 x 0.2 is glued, and is loaded at its end.
 model::Description bracket() {
   auto d = test::description(test::rubber, height);
-  test::add_body(d, "block", rectangle(0.3, 0.3, 2, 2)).translate = {-0.1, -0.05, 0.0};
-  test::add_body(d, "strip", rectangle(1.0, 0.2, 10, 2)).translate = {0.0, 0.0, height};
+  test::add_body(d, "block", test::plate(0.3, 0.3, 2, 2)).translate = {-0.1, -0.05, 0.0};
+  test::add_body(d, "strip", test::plate(1.0, 0.2, 10, 2)).translate = {0.0, 0.0, height};
   test::add_box_set(d, "root", {-0.01, -0.01, 0.01}, {0.21, 0.21, 1.0});
   test::add_box_set(d, "tip", {0.99, -0.01, 0.01}, {1.01, 0.21, 1.0});
-  name_body(d, "block");
-  glue(d, "root", "block");
+  test::name_nodes(d, "block", "block");
+  test::tie(d, "root", {"block"});
   d.forces.push_back({"tip", {0.3, 0.2, 0.5}, {}, true, "", {}});
   d.run.analysis = "static";
   d.run.duration = 1000.0;
@@ -121,10 +101,10 @@ TEST(tie_forces, are_the_load_of_a_bracket_on_whatever_carries_it) {
 TEST(tie_forces, move_the_masses_that_are_glued_on) {
   // Two equal plates glued all over; a pressure pushes the lower one down: half of it goes through the glue.
   auto d = test::description(test::rubber, height);
-  test::add_body(d, "lower", rectangle(0.6, 0.4, 3, 2));
-  test::add_body(d, "upper", rectangle(0.6, 0.4, 3, 2)).translate = {0.0, 0.0, height};
-  name_body(d, "upper");
-  glue(d, "upper", "lower");
+  test::add_body(d, "lower", test::plate(0.6, 0.4, 3, 2));
+  test::add_body(d, "upper", test::plate(0.6, 0.4, 3, 2)).translate = {0.0, 0.0, height};
+  test::name_nodes(d, "upper", "upper");
+  test::tie(d, "upper", {"lower"});
   d.pressure.push_back({{"lower"}, "", 100.0, "", {}});
   const model::Model model = test::build(d);
   cluster::Simulation simulation(model, solve::KernelChoice::automatic);
@@ -144,10 +124,10 @@ TEST(tie_forces, move_the_masses_that_are_glued_on) {
 
 TEST(tie_forces, of_a_node_have_a_side_that_pulls) {
   auto d = test::description(test::rubber, height);
-  test::add_body(d, "lower", rectangle(1.0, 1.0, 1, 1));
-  test::add_body(d, "upper", rectangle(0.2, 0.2, 1, 1)).translate = {0.5, 0.2, height};
-  name_body(d, "upper");
-  glue(d, "upper", "lower");
+  test::add_body(d, "lower", test::plate(1.0, 1.0, 1, 1));
+  test::add_body(d, "upper", test::plate(0.2, 0.2, 1, 1)).translate = {0.5, 0.2, height};
+  test::name_nodes(d, "upper", "upper");
+  test::tie(d, "upper", {"lower"});
   for (const double side : {1.0, -1.0}) {
     d.bodies[1].translate.z = side * height;
     const model::Model model = test::build(d);
@@ -217,11 +197,11 @@ std::array<double, 2> worst_drifts(const model::Model& model, double duration) {
 TEST(tie_forces, do_work_that_closes_the_balance_of_each_body) {
   for (const bool rotations : {true, false}) {
     auto d = test::description(test::rubber, height);
-    test::add_body(d, "lower", rectangle(1.0, 0.6, 6, 4));
-    test::add_body(d, "upper", rectangle(0.5, 0.3, 5, 3)).translate = {0.25, 0.15, height};
+    test::add_body(d, "lower", test::plate(1.0, 0.6, 6, 4));
+    test::add_body(d, "upper", test::plate(0.5, 0.3, 5, 3)).translate = {0.25, 0.15, height};
     d.bodies[1].velocity = {0.0, 0.0, 2.0};
-    name_body(d, "upper");
-    glue(d, "upper", "lower");
+    test::name_nodes(d, "upper", "upper");
+    test::tie(d, "upper", {"lower"});
     d.ties[0].rotations = rotations;
     d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
     test::add_box_set(d, "edge", {-0.01, -1.0, -0.01}, {0.01, 1.0, 0.01});
@@ -239,13 +219,13 @@ TEST(tie_forces, do_work_that_closes_the_balance_of_each_body) {
 
 TEST(tie_forces, do_work_on_rigid_bodies_that_closes_their_balance) {
   auto d = test::description(test::rubber, height);
-  test::add_body(d, "block", rectangle(0.3, 0.3, 2, 2)).rigid = true;
-  test::add_body(d, "strip", rectangle(0.8, 0.2, 8, 3)).translate = {0.31, 0.05, 0.02};
+  test::add_body(d, "block", test::plate(0.3, 0.3, 2, 2)).rigid = true;
+  test::add_body(d, "strip", test::plate(0.8, 0.2, 8, 3)).translate = {0.31, 0.05, 0.02};
   d.bodies[1].velocity = {0.0, 0.0, 1.0};
   d.node_sets.emplace_back().name = "root";
   d.node_sets.back().bodies = {"strip"};
   d.node_sets.back().box = model::BoxSelection{{0.3, -1.0, -1.0}, {0.32, 1.0, 1.0}};
-  glue(d, "root", "block");
+  test::tie(d, "root", {"block"});
   d.ties[0].distance = 0.05;
   const std::array<double, 2> drifts = worst_drifts(test::build(d), 0.5);
   EXPECT_LT(drifts[0], 1e-4);

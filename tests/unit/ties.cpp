@@ -12,42 +12,23 @@
 #include "model/tie_motion.hpp"
 #include "quality/assess.hpp"
 #include "support/descriptions.hpp"
+#include "support/ties.hpp"
 
 namespace fexp {
 namespace {
 
 using test::add_body;
+using test::name_nodes;
 using test::rubber;
+using test::tie;
 
 constexpr double thickness = 0.05;
-
-model::Plate sheet(double x, double y, int cells_x, int cells_y) {
-  model::Plate p;
-  p.length_x = x;
-  p.length_y = y;
-  p.cells_x = cells_x;
-  p.cells_y = cells_y;
-  return p;
-}
-
-void name_nodes(model::Description& d, const std::string& set, const std::string& body) {
-  d.node_sets.emplace_back().name = set;
-  d.node_sets.back().bodies = {body};
-}
-
-model::TieDescription& tie(model::Description& d, const std::string& set, std::vector<std::string> surface) {
-  model::TieDescription& t = d.ties.emplace_back();
-  t.name = "tie " + std::to_string(d.ties.size());
-  t.set = set;
-  t.surface = std::move(surface);
-  return t;
-}
 
 /// A small plate glued on top of a larger one, both in one free rigid motion.
 model::Description glued(double gap = thickness) {
   auto d = test::description(rubber, thickness);
-  add_body(d, "lower", sheet(1.0, 0.6, 6, 4));
-  add_body(d, "upper", sheet(0.5, 0.3, 5, 3)).translate = {0.25, 0.15, gap};
+  add_body(d, "lower", test::plate(1.0, 0.6, 6, 4));
+  add_body(d, "upper", test::plate(0.5, 0.3, 5, 3)).translate = {0.25, 0.15, gap};
   name_nodes(d, "upper", "upper");
   tie(d, "upper", {"lower"});
   const Vec3d rate{2.0, 1.0, 5.0};
@@ -130,7 +111,7 @@ TEST(ties, are_no_penetrations_at_the_start) {
   auto d = glued(0.5 * thickness);
   d.contact.enabled = true;
   EXPECT_TRUE(contact::find_initial_penetrations(test::build(d), test::build(d).reference_position).pairs.empty());
-  model::BodyDescription& web = add_body(d, "web", sheet(0.3, 0.2, 3, 2));
+  model::BodyDescription& web = add_body(d, "web", test::plate(0.3, 0.2, 3, 2));
   web.rotate.push_back({{1.0, 0.0, 0.0}, -90.0, {}});
   web.translate = {0.3, 0.05, 0.001};
   test::add_box_set(d, "edge", {0.0, 0.0, -0.01}, {1.0, 0.1, 0.01});
@@ -146,7 +127,7 @@ TEST(ties, are_no_penetrations_at_the_start) {
 
 TEST(ties, are_told_as_what_joins_bodies) {
   auto d = glued(0.0);
-  d.bodies[1].mesh = sheet(0.5, 0.3, 3, 2);  // Of the same cells as the lower one, on whose nodes its own lie
+  d.bodies[1].mesh = test::plate(0.5, 0.3, 3, 2);  // Of the same cells as the lower one, on whose nodes its own lie
   d.bodies[1].translate = {1.0 / 6.0, 0.15, 0.0};
   const auto kinds_of = [](const model::Description& described) {
     const model::Model model = test::build(described);
@@ -194,9 +175,9 @@ TEST(ties, keep_momenta_energy_and_arms_in_free_motion) {
 TEST(ties, of_coincident_nodes_are_as_one_mesh) {
   // A strip in one piece and one of two that are tied node to node vibrate alike.
   auto d = test::description(rubber, thickness);
-  add_body(d, "whole", sheet(1.0, 0.2, 10, 2));
-  add_body(d, "left", sheet(0.5, 0.2, 5, 2)).translate = {0.0, 1.0, 0.0};
-  add_body(d, "right", sheet(0.5, 0.2, 5, 2)).translate = {0.5, 1.0, 0.0};
+  add_body(d, "whole", test::plate(1.0, 0.2, 10, 2));
+  add_body(d, "left", test::plate(0.5, 0.2, 5, 2)).translate = {0.0, 1.0, 0.0};
+  add_body(d, "right", test::plate(0.5, 0.2, 5, 2)).translate = {0.5, 1.0, 0.0};
   test::add_box_set(d, "roots", {-0.01, -1.0, -1.0}, {0.01, 2.0, 1.0});
   test::fix(d, "roots", {"x", "y", "z", "rx", "ry", "rz"});
   d.node_sets.emplace_back().name = "seam";
@@ -247,8 +228,8 @@ TEST(ties, to_a_rigid_body_move_with_it) {
 
 TEST(ties, swing_a_strip_from_a_rigid_body_and_keep_the_balance) {
   auto d = test::description(rubber, thickness);
-  add_body(d, "block", sheet(0.3, 0.3, 2, 2)).rigid = true;
-  add_body(d, "strip", sheet(0.8, 0.2, 8, 3)).translate = {0.31, 0.05, 0.02};
+  add_body(d, "block", test::plate(0.3, 0.3, 2, 2)).rigid = true;
+  add_body(d, "strip", test::plate(0.8, 0.2, 8, 3)).translate = {0.31, 0.05, 0.02};
   d.bodies[1].velocity = {0.0, 0.0, 1.0};
   d.node_sets.emplace_back().name = "root";
   d.node_sets.back().bodies = {"strip"};
@@ -291,7 +272,7 @@ TEST(ties, to_held_nodes_of_a_body_that_moves_hold_nodes_there_only) {
   }
   test::add_box_set(d, "half", {-0.01, -0.01, -0.01}, {0.51, 1.0, 0.01});
   test::fix(d, "half", {"x", "y", "z", "rx", "ry", "rz"});
-  add_body(d, "third", sheet(0.1, 0.1, 1, 1)).translate = {0.05, 0.05, thickness};
+  add_body(d, "third", test::plate(0.1, 0.1, 1, 1)).translate = {0.05, 0.05, thickness};
   name_nodes(d, "third", "third");
   tie(d, "third", {"lower"});
   d.gravity.push_back({{0.0, 0.0, -9.81}, "", {}});
@@ -344,8 +325,8 @@ TEST(ties, join_islands_whether_there_is_contact_or_not) {
 TEST(ties, have_a_step_that_is_stable_for_thick_shells) {
   // As thick as the elements are long, at the very critical step: masses at arms are as large as those of carriers.
   auto d = test::description(rubber, 0.1);
-  add_body(d, "lower", sheet(0.8, 0.8, 8, 8));
-  add_body(d, "upper", sheet(0.8, 0.8, 8, 8)).translate = {0.0, 0.0, 0.1};
+  add_body(d, "lower", test::plate(0.8, 0.8, 8, 8));
+  add_body(d, "upper", test::plate(0.8, 0.8, 8, 8)).translate = {0.0, 0.0, 0.1};
   name_nodes(d, "upper", "upper");
   tie(d, "upper", {"lower"});
   d.run.safety = 1.0;
@@ -418,7 +399,7 @@ TEST(ties, refuse_what_has_no_meaning) {
   expect_error(d, "the name \"tie 1\" is already that of another tie");
 
   d = glued();
-  add_body(d, "third", sheet(0.3, 0.2, 2, 2)).translate = {0.3, 0.2, 2.0 * thickness};
+  add_body(d, "third", test::plate(0.3, 0.2, 2, 2)).translate = {0.3, 0.2, 2.0 * thickness};
   name_nodes(d, "third", "third");
   tie(d, "third", {"upper"});
   expect_error(d, "which tie \"tie 1\" has tied itself");
@@ -426,9 +407,9 @@ TEST(ties, refuse_what_has_no_meaning) {
 
 TEST(ties, may_carry_one_body_on_two_others) {
   auto d = test::description(rubber, thickness);
-  add_body(d, "left", sheet(0.5, 0.4, 4, 4));
-  add_body(d, "right", sheet(0.5, 0.4, 3, 3)).translate = {0.6, 0.0, 0.0};
-  add_body(d, "bridge", sheet(0.4, 0.2, 6, 3)).translate = {0.35, 0.1, thickness};
+  add_body(d, "left", test::plate(0.5, 0.4, 4, 4));
+  add_body(d, "right", test::plate(0.5, 0.4, 3, 3)).translate = {0.6, 0.0, 0.0};
+  add_body(d, "bridge", test::plate(0.4, 0.2, 6, 3)).translate = {0.35, 0.1, thickness};
   d.bodies[0].velocity = {0.0, 0.0, 1.0};
   name_nodes(d, "bridge", "bridge");
   tie(d, "bridge", {"left", "right"});
